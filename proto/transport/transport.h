@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lockwind/result.h"
+
+namespace lockwind {
+
+/// How a payload travels. best_effort: may be lost, doubled, reordered. reliable: in order to a live peer,
+/// but may be lost with the connection, so the application acknowledges it.
+enum class Channel : std::uint8_t { best_effort = 0, reliable = 1 };
+
+/// One payload as it arrived.
+struct Packet {
+    std::uint32_t from = 0;
+    Channel channel = Channel::best_effort;
+    std::vector<std::byte> bytes;
+};
+
+enum class SendResult : std::uint8_t {
+    sent = 0,
+    full = 1, // not written: the writer's queue is full; retry or give up on the laggard
+};
+
+struct TransportStats {
+    std::uint64_t bytes_out = 0;
+    std::uint64_t bytes_in = 0;
+    std::uint64_t packets_out = 0;
+    std::uint64_t packets_in = 0;
+};
+
+/// One endpoint of a match: moves opaque bytes between peers (session's PeerId; 0 is the server,
+/// 0xffffffff every client). Addressed to somebody else: never delivered. Knows nothing of messages.
+class Transport {
+public:
+    virtual ~Transport() = default;
+
+    virtual SendResult send(std::uint32_t to, Channel channel, std::span<const std::byte> bytes) = 0;
+    /// Appends what has arrived.
+    virtual void receive(std::vector<Packet>& out) = 0;
+    /// Returns when something has arrived or at `deadline_us` (clock_us()), whichever is first.
+    virtual void wait_until(std::uint64_t deadline_us) = 0;
+    /// The transport's monotonic clock, us; virtual in a simulated network.
+    virtual std::uint64_t clock_us() const = 0;
+    /// How many peers are matched now: a client waits for 1 before its first message.
+    virtual std::uint32_t peer_count() const = 0;
+    virtual TransportStats stats() const = 0;
+};
+
+/// Largest payload that send() takes.
+inline constexpr std::size_t kPayloadSizeBytesMax = 64'000;
+
+} // namespace lockwind

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+
+#include "lockwind/types.h"
+
+namespace lockwind {
+
+enum class EventType : std::uint8_t {
+    contact_begin = 0, // a < b; value 0
+    contact_end = 1,   // a < b; value 0
+    hit = 2,           // a < b; value: normal impulse / reduced mass, Q11.20 m/s, above 1 m/s
+    created = 3,       // a: the new body, b: its spawner or 0
+    destroyed = 4,     // a: the body, b: 0
+    score = 5,         // a: the scoring pod, b: the pod that was hit; value: a's score
+};
+
+/// Something that happened in a tick. A tick's events are ordered by (type, a, b).
+struct Event {
+    EventType type;
+    BodyId a;
+    BodyId b;
+    std::int64_t value;
+
+    bool operator==(const Event&) const = default;
+};
+
+} // namespace lockwind

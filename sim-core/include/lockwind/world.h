@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "lockwind/event.h"
+#include "lockwind/result.h"
+#include "lockwind/world_definition.h"
+
+namespace lockwind {
+
+class PhaseObserver;
+struct SlotInput;
+struct HashTree;
+
+/// A body as a reader sees it; exact, at the API's scale.
+struct BodyView {
+    BodyId id;
+    BodyMode mode;
+    ShapeDefinition shape;
+    Vec3 position;         // m
+    RealQuat orientation;
+    Vec3 linear_velocity;  // m/s
+    Vec3 angular_velocity; // rad/s
+    Real mass;             // kg; 0 unless dynamic
+};
+
+struct RayHit {
+    BodyId body;
+    Real fraction; // of the ray, 0 .. 1
+    Vec3 point;    // m
+    Vec3 normal;   // unit, out of the body
+};
+
+/// Counts of one tick, for progress, metrics and the vacuity checks of tests.
+struct WorldCounts {
+    std::uint32_t bodies;
+    std::uint32_t pairs;    // overlapping fat bounds
+    std::uint32_t contacts; // contact points in touching manifolds
+    std::uint32_t manifolds;
+};
+
+class World;
+using WorldPtr = std::unique_ptr<World>;
+
+/// A deterministic rigid-body world. Same definition, same inputs: the same bits everywhere.
+class World {
+public:
+    /// An Error names the body and field that is wrong.
+    static Result<WorldPtr> create(const WorldDefinition& definition);
+    ~World();
+    World(const World&) = delete;
+    World& operator=(const World&) = delete;
+
+    std::uint32_t slot_count() const;
+    Tick tick() const;
+    /// One input per slot. No allocation. An Error (a capacity ran out) names what to raise; final.
+    Status step(std::span<const SlotInput> inputs, PhaseObserver* observer = nullptr);
+    static std::span<const std::string_view> phases();
+
+    /// Events of the last step, in order.
+    std::span<const Event> events() const;
+    WorldCounts counts() const;
+    std::uint32_t body_count() const;
+    BodyView body_at(BodyRow row) const; // id order
+    std::optional<BodyView> body(BodyId id) const;
+    /// The body that slot's pod is; nothing where it is gone.
+    std::optional<BodyView> pod(Slot slot) const;
+    std::uint32_t score(Slot slot) const;
+
+    /// Between steps, all immediate; SI units, world frame. False where there is no such dynamic body.
+    bool apply_impulse(BodyId id, const Vec3& impulse, const Vec3& point); // N s, at point
+    bool apply_force(BodyId id, const Vec3& force, const Vec3& point);     // N over the next tick
+    bool apply_torque(BodyId id, const Vec3& torque);                      // N m over the next tick
+    Status create_body(const BodyDefinition& definition);
+    bool destroy_body(BodyId id);
+
+    /// First hit on the segment from + t * (to - from); ties go to the lower id.
+    std::optional<RayHit> ray_cast(const Vec3& from, const Vec3& to) const;
+
+    std::uint64_t state_hash() const;
+    HashTree hash_tree() const;
+    void save(std::vector<std::byte>& out) const;
+    Status load(std::span<const std::byte> bytes);
+    static StateSchema schema();
+    std::uint32_t row_count(std::uint32_t section) const;
+    /// Test tools: live bytes of a section, native order; dropping caches.
+    std::span<std::byte> section_bytes(std::uint32_t section);
+    void drop_derived();
+
+private:
+    struct Impl;
+    explicit World(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace lockwind

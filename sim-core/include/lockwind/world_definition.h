@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lockwind/shape.h"
+#include "lockwind/types.h"
+#include "lockwind/vector.h"
+
+namespace lockwind {
+
+enum class BodyMode : std::uint8_t { fixed = 0, kinematic = 1, dynamic = 2 };
+
+struct BodyDefinition {
+    BodyId id = 0; // 1 .. 2^32 - 1, unique
+    BodyMode mode = BodyMode::dynamic;
+    ShapeDefinition shape;
+    Vec3 position;         // m
+    RealQuat orientation;  // x y z w; normalised on creation, must not be 0
+    Vec3 linear_velocity;  // m/s
+    Vec3 angular_velocity; // rad/s
+    Real density = 1000.0; // kg/m^3; used where mass is 0
+    Real mass = 0.0;       // kg; overrides density where > 0
+    Real friction = 0.5;   // Coulomb; a pair uses the geometric mean
+    Real restitution = 0.0; // a pair uses the larger
+};
+
+/// A player-controlled body: thrust along its +z, turn about y, jump, shoot a ball.
+struct PodDefinition {
+    BodyId body = 0;               // a dynamic body of the definition; pods are seated in slot order
+    Real thrust_acceleration = 25.0;  // m/s^2 at full stick
+    Real speed_max = 12.0;         // m/s, thrust fades to 0 there
+    Real turn_rate = 3.0;          // rad/s at full stick
+    Real jump_speed = 5.0;         // m/s
+    Real ball_radius = 0.2;        // m
+    Real ball_density = 400.0;     // kg/m^3
+    Real ball_speed = 20.0;        // m/s, relative to the pod
+    std::uint32_t ball_cooldown_ticks = 10;
+    std::uint32_t ball_lifetime_ticks = 180;
+};
+
+struct WorldSettings {
+    std::uint32_t tick_rate_hz = 60; // 10 .. 240
+    std::uint32_t substeps = 4;      // 1 .. 16
+    Vec3 gravity{0, -9.81, 0};       // m/s^2
+    Real linear_speed_max = 400.0;   // m/s
+    Real angular_speed_max = 100.0;  // rad/s
+    Real bounds = 1000.0;            // m from the origin; dynamic bodies outside are destroyed
+    std::uint64_t seed = 1;
+    // Capacities; 0 derives one from the bodies of the scene.
+    std::uint32_t body_capacity = 0;
+    std::uint32_t pair_capacity = 0;
+    std::uint32_t manifold_capacity = 0;
+};
+
+struct WorldDefinition {
+    std::string name;
+    WorldSettings settings;
+    std::vector<BodyDefinition> bodies;
+    std::vector<PodDefinition> pods; // slot s controls pods[s]
+};
+
+} // namespace lockwind

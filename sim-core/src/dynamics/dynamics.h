@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "base/table.h"
+#include "dynamics/body.h"
+#include "dynamics/contact.h"
+#include "lockwind/vector.h"
+
+namespace lockwind {
+
+struct Manifold;
+
+struct DynamicsSettings {
+    std::uint32_t tick_rate_hz = 60;
+    std::uint32_t substeps = 4;
+    Vec3 gravity;                  // m/s^2
+    Real linear_speed_max = 400.0; // m/s
+    Real angular_speed_max = 100.0; // rad/s
+    std::uint32_t body_capacity = 0;
+    std::uint32_t pair_capacity = 0;
+    std::uint32_t manifold_capacity = 0;
+};
+
+/// Views of the arena's sections; motion and properties have the same rows.
+struct DynamicsTables {
+    Table<BodyMotion> motion;
+    Table<BodyProperties> properties;
+    Table<Pair> pairs;
+    Table<Manifold> manifolds;
+};
+
+enum class StepFault : std::uint8_t { none = 0, bodies_full = 1, pairs_full = 2, manifolds_full = 3, events_full = 4 };
+
+/// A pair that began or ceased to touch in this tick's narrow phase; in pair order.
+struct ContactChange {
+    BodyRow row_a;
+    BodyRow row_b;
+    bool begin;
+};
+
+/// The rigid-body step over the arena's tables. Holds settings and scratch only: nothing that a later
+/// tick reads, nothing allocated after construction.
+class Dynamics {
+public:
+    explicit Dynamics(const DynamicsSettings& settings);
+    ~Dynamics();
+    Dynamics(const Dynamics&) = delete;
+    Dynamics& operator=(const Dynamics&) = delete;
+
+    /// Updates fat bounds and the sorted pairs of overlapping ones.
+    StepFault broad_phase(const DynamicsTables& tables);
+    /// Makes, recycles and frees manifolds of the pairs. `tick` is the tick being stepped (>= 1).
+    StepFault narrow_phase(const DynamicsTables& tables, std::uint32_t tick);
+    std::span<const ContactChange> contact_changes() const;
+    /// Substeps: integrates velocities and positions, solves contacts with friction.
+    void solve(const DynamicsTables& tables, std::uint32_t tick);
+    /// Newton's restitution for contacts that approached faster than 1 m/s.
+    void restitution(const DynamicsTables& tables);
+
+    /// Drops what is only a cache; the results of later phases do not change by a bit.
+    void drop_derived();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Removes pairs (and frees manifolds) of rows that map to kNoIndex and renumbers the others.
+/// `new_row_of[old_row]`, monotone over the rows that stay. Appends contact-end changes to none.
+void remap_rows(const DynamicsTables& tables, std::span<const BodyRow> new_row_of);
+
+} // namespace lockwind
