@@ -7,8 +7,8 @@ namespace lockwind {
 
 } // namespace lockwind
 
-/// A caller's misuse or a broken invariant; stays on in every build. Bytes from a peer or a file never
-/// reach it: they are checked and refused with an Error.
+/// A caller's misuse or a broken invariant; stays on in every build. Bytes from a peer or a file
+/// never reach it: they are checked and refused with an Error.
 #define LOCKWIND_ASSERT(condition)                                                                 \
     (static_cast<bool>(condition) ? static_cast<void>(0)                                           \
                                   : ::lockwind::assert_failed(#condition, __FILE__, __LINE__))

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <cstdint>
-
 #include "lockwind/types.h"
+
+#include <cstdint>
 
 namespace lockwind {
 
@@ -13,9 +13,10 @@ enum class EventType : std::uint8_t {
     created = 3,       // a: the new body, b: its spawner or 0
     destroyed = 4,     // a: the body, b: 0
     score = 5,         // a: the scoring pod, b: the pod that was hit; value: a's score
+    respawned = 6,     // a: a pod put back at its start because it left the bounds, b: 0
 };
 
-/// Something that happened in a tick. A tick's events are ordered by (type, a, b).
+/// Something that happened in a tick. A tick's events are ordered by (type, a, b, value).
 struct Event {
     EventType type;
     BodyId a;

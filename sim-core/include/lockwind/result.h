@@ -1,10 +1,10 @@
 #pragma once
 
+#include "lockwind/assert.h"
+
 #include <string>
 #include <utility>
 #include <variant>
-
-#include "lockwind/assert.h"
 
 namespace lockwind {
 

@@ -11,20 +11,21 @@ enum class FieldType : std::uint8_t { u8, u16, u32, u64, i32, i64 };
 
 /// One stored field of a row. Hash, diff, describe and the canonical form are generated from these.
 struct FieldDescriptor {
-    std::string_view name;         // as in the C++ struct
-    FieldType type;                // of one component
-    std::uint32_t components;      // array length; 1 for a plain field
-    std::uint32_t offset_bytes;    // in the row
-    std::uint32_t fraction_bits;   // of a fixed-point value; 0 for an integer
-    std::string_view unit;         // "m", "m/s", "tick" ...; "" for none
+    std::string_view name;          // as in the C++ struct
+    FieldType type;                 // of one component
+    std::uint32_t components;       // array length; 1 for a plain field
+    std::uint32_t offset_bytes;     // in the row
+    std::uint32_t fraction_bits;    // of a fixed-point value; 0 for an integer
+    std::string_view unit;          // "m", "m/s", "tick" ...; "" for none
     std::string_view components_as; // one letter a component ("xyz", "xyzw"); "" prints [index]
 };
 
-/// A table of the arena. `state` tables are saved, hashed and sent; `derived` ones are only a cache.
+/// A table of the arena. `state` tables are saved, hashed and sent; `derived` ones are only a
+/// cache.
 struct SectionDescriptor {
     std::string_view name;
-    std::string_view owner;        // the layer that writes it
-    std::uint32_t stride_bytes;    // row size, the same on every architecture, a multiple of 4
+    std::string_view owner;     // the layer that writes it
+    std::uint32_t stride_bytes; // row size, the same on every architecture, a multiple of 4
     bool derived;
     std::string_view entity_field; // the field that names a row's entity; "" : the row's index does
     std::span<const FieldDescriptor> fields;
@@ -61,9 +62,10 @@ struct FieldShape<T[N]> {
 /// Describes `Row::member` (an integer or an array of integers).
 #define LOCKWIND_FIELD(Row, member, fraction_bits, unit, components_as)                            \
     ::lockwind::FieldDescriptor {                                                                  \
-        #member,                                                                                   \
-            ::lockwind::field_type_of<                                                             \
-                ::lockwind::FieldShape<decltype(Row::member)>::Component>(),                       \
-            ::lockwind::FieldShape<decltype(Row::member)>::components,                             \
-            static_cast<std::uint32_t>(offsetof(Row, member)), fraction_bits, unit, components_as  \
+#member,                                                                                   \
+            ::lockwind::field_type_of < ::lockwind::FieldShape < decltype(Row::member)>            \
+                ::Component>(),                                                                    \
+            ::lockwind::FieldShape < decltype(Row::member)> ::components,                          \
+            static_cast < std::uint32_t>(offsetof(Row, member)), fraction_bits, unit,              \
+            components_as                                                                          \
     }

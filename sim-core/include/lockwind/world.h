@@ -1,5 +1,10 @@
 #pragma once
 
+#include "lockwind/event.h"
+#include "lockwind/result.h"
+#include "lockwind/schema.h"
+#include "lockwind/world_definition.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -7,10 +12,6 @@
 #include <span>
 #include <string_view>
 #include <vector>
-
-#include "lockwind/event.h"
-#include "lockwind/result.h"
-#include "lockwind/world_definition.h"
 
 namespace lockwind {
 
@@ -23,7 +24,7 @@ struct BodyView {
     BodyId id;
     BodyMode mode;
     ShapeDefinition shape;
-    Vec3 position;         // m
+    Vec3 position; // m
     RealQuat orientation;
     Vec3 linear_velocity;  // m/s
     Vec3 angular_velocity; // rad/s
@@ -73,7 +74,8 @@ public:
     std::optional<BodyView> pod(Slot slot) const;
     std::uint32_t score(Slot slot) const;
 
-    /// Between steps, all immediate; SI units, world frame. False where there is no such dynamic body.
+    /// Between steps, all immediate; SI units, world frame. False where there is no such dynamic
+    /// body.
     bool apply_impulse(BodyId id, const Vec3& impulse, const Vec3& point); // N s, at point
     bool apply_force(BodyId id, const Vec3& force, const Vec3& point);     // N over the next tick
     bool apply_torque(BodyId id, const Vec3& torque);                      // N m over the next tick

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "lockwind/shape.h"
 #include "lockwind/types.h"
 #include "lockwind/vector.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
 
 namespace lockwind {
 
@@ -16,26 +16,26 @@ struct BodyDefinition {
     BodyId id = 0; // 1 .. 2^32 - 1, unique
     BodyMode mode = BodyMode::dynamic;
     ShapeDefinition shape;
-    Vec3 position;         // m
-    RealQuat orientation;  // x y z w; normalised on creation, must not be 0
-    Vec3 linear_velocity;  // m/s
-    Vec3 angular_velocity; // rad/s
-    Real density = 1000.0; // kg/m^3; used where mass is 0
-    Real mass = 0.0;       // kg; overrides density where > 0
-    Real friction = 0.5;   // Coulomb; a pair uses the geometric mean
+    Vec3 position;          // m
+    RealQuat orientation;   // x y z w; normalised on creation, must not be 0
+    Vec3 linear_velocity;   // m/s
+    Vec3 angular_velocity;  // rad/s
+    Real density = 1000.0;  // kg/m^3; used where mass is 0
+    Real mass = 0.0;        // kg; overrides density where > 0
+    Real friction = 0.5;    // Coulomb; a pair uses the geometric mean
     Real restitution = 0.0; // a pair uses the larger
 };
 
 /// A player-controlled body: thrust along its +z, turn about y, jump, shoot a ball.
 struct PodDefinition {
-    BodyId body = 0;               // a dynamic body of the definition; pods are seated in slot order
-    Real thrust_acceleration = 25.0;  // m/s^2 at full stick
-    Real speed_max = 12.0;         // m/s, thrust fades to 0 there
-    Real turn_rate = 3.0;          // rad/s at full stick
-    Real jump_speed = 5.0;         // m/s
-    Real ball_radius = 0.2;        // m
-    Real ball_density = 400.0;     // kg/m^3
-    Real ball_speed = 20.0;        // m/s, relative to the pod
+    BodyId body = 0; // a dynamic body of the definition; pods are seated in slot order
+    Real thrust_acceleration = 25.0; // m/s^2 at full stick
+    Real speed_max = 12.0;           // m/s, thrust fades to 0 there
+    Real turn_rate = 3.0;            // rad/s at full stick
+    Real jump_speed = 5.0;           // m/s
+    Real ball_radius = 0.2;          // m
+    Real ball_density = 400.0;       // kg/m^3
+    Real ball_speed = 20.0;          // m/s, relative to the pod
     std::uint32_t ball_cooldown_ticks = 10;
     std::uint32_t ball_lifetime_ticks = 180;
 };

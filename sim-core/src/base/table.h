@@ -1,14 +1,14 @@
 #pragma once
 
+#include "lockwind/assert.h"
+
 #include <cstdint>
 #include <span>
 
-#include "lockwind/assert.h"
-
 namespace lockwind {
 
-/// A view of one section of the arena: `count` live rows (the count itself is arena state), then dead
-/// rows, which are all zero bytes.
+/// A view of one section of the arena: `count` live rows (the count itself is arena state), then
+/// dead rows, which are all zero bytes.
 template <class Row>
 class Table {
 public:

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "base/arena.h"
+
+#include "lockwind/hash_tree.h"
+#include "lockwind/schema.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lockwind {
+
+/// XXH3-64, seed 0 (xxHash 0.8): the same value on every architecture.
+std::uint64_t hash_bytes(std::span<const std::byte> bytes);
+
+/// Hashes the `state` sections of an arena:
+///   page    = XXH3-64 of at most kHashPageBytes of the section's canonical bytes
+///   section = XXH3-64 of its pages' hashes, little-endian
+///   root    = XXH3-64 of the sections' hashes, little-endian, in schema order
+/// Row counts are section 0's content, so an empty section and a missing one differ.
+class StateHasher {
+public:
+    /// Sizes the scratch for any state that fits `arena`; root() then allocates nothing.
+    explicit StateHasher(const StateArena& arena);
+
+    std::uint64_t root(const StateArena& arena);
+    HashTree tree(const StateArena& arena);
+
+private:
+    /// Leaves the section's page hashes, as canonical words, in pages_.
+    std::uint64_t hash_section(const StateArena& arena, std::uint32_t section);
+
+    std::vector<std::uint64_t> pages_;    // of one section
+    std::vector<std::uint64_t> sections_; // of all `state` sections
+    std::vector<std::byte> swapped_;      // canonical rows of one section; big-endian machines only
+};
+
+} // namespace lockwind
