@@ -57,15 +57,24 @@ struct FieldShape<T[N]> {
     static constexpr std::uint32_t components = N;
 };
 
+template <class Member>
+constexpr FieldDescriptor describe_field(std::string_view name,
+                                         std::size_t offset_bytes,
+                                         std::uint32_t fraction_bits,
+                                         std::string_view unit,
+                                         std::string_view components_as) {
+    return {name,
+            field_type_of<typename FieldShape<Member>::Component>(),
+            FieldShape<Member>::components,
+            static_cast<std::uint32_t>(offset_bytes),
+            fraction_bits,
+            unit,
+            components_as};
+}
+
 } // namespace lockwind
 
 /// Describes `Row::member` (an integer or an array of integers).
 #define LOCKWIND_FIELD(Row, member, fraction_bits, unit, components_as)                            \
-    ::lockwind::FieldDescriptor {                                                                  \
-#member,                                                                                   \
-            ::lockwind::field_type_of < ::lockwind::FieldShape < decltype(Row::member)>            \
-                ::Component>(),                                                                    \
-            ::lockwind::FieldShape < decltype(Row::member)> ::components,                          \
-            static_cast < std::uint32_t>(offsetof(Row, member)), fraction_bits, unit,              \
-            components_as                                                                          \
-    }
+    ::lockwind::describe_field<decltype(Row::member)>(                                             \
+        #member, offsetof(Row, member), fraction_bits, unit, components_as)
