@@ -1,8 +1,8 @@
 #pragma once
 
-#include <cstdint>
-
 #include "lockwind/vector.h"
+
+#include <cstdint>
 
 namespace lockwind {
 
@@ -21,5 +21,10 @@ struct ShapeDefinition {
 /// Range of radius, half_height and half_extents, m: sizes outside are refused.
 inline constexpr Real kShapeSizeMin = 0.01;
 inline constexpr Real kShapeSizeMax = 250.0;
+
+/// Largest distance of a kinematic or dynamic body's surface from its origin, m. Together with the
+/// largest fixed box (half diagonal 433.02 m) it keeps every vector between the centres of a pair
+/// within Q9.22's +-512 m.
+inline constexpr Real kMovingRadiusMax = 75.0;
 
 } // namespace lockwind

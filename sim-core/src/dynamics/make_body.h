@@ -1,0 +1,42 @@
+#pragma once
+
+#include "dynamics/body.h"
+#include "geometry/shape_instance.h"
+
+#include "lockwind/result.h"
+#include "lockwind/world_definition.h"
+
+namespace lockwind {
+
+// Limits that make_body keeps; the solver's formats rest on them.
+inline constexpr Real kBodyPositionMax = 30000.0;  // m, each axis
+inline constexpr Real kBodyMassMin = 0.000001;     // kg: 1/m stays below 2^20
+inline constexpr Real kBodyMassMax = 1000000000.0; // kg: 1/m keeps three digits in Q24.40
+inline constexpr Real kBodySpeedMax = 2000.0;      // m/s; also of angular speed x gyration radius
+inline constexpr Real kFrictionMax = 4.0;
+inline constexpr Real kRestitutionMax = 1.0;
+
+/// Fills the rows of a new body. An Error names the body, the field and what would be right; the
+/// rows are then untouched. fat_bounds come out empty (min > max), so that the broad phase inserts
+/// it.
+Status make_body(const BodyDefinition& definition,
+                 const WorldSettings& settings,
+                 BodyMotion& motion,
+                 BodyProperties& properties);
+
+/// Rows read back at the API's scale.
+struct BodyReading {
+    BodyMode mode;
+    ShapeDefinition shape;
+    Vec3 position; // m
+    RealQuat orientation;
+    Vec3 linear_velocity;  // m/s
+    Vec3 angular_velocity; // rad/s
+    Real mass;             // kg; 0 unless dynamic
+};
+BodyReading read_body(const BodyMotion& motion, const BodyProperties& properties);
+
+/// The shape of a row, turned by `rotation` (identity for a sphere).
+ShapeInstance shape_of(const BodyProperties& properties, const std::int32_t* rotation);
+
+} // namespace lockwind
