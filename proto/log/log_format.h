@@ -17,7 +17,6 @@ namespace lockwind {
 /// Number of the log format; a reader reads every version up to its own.
 inline constexpr std::uint32_t kLogFormatVersion = 1;
 
-inline constexpr std::uint32_t kPlayersMax = 256;
 inline constexpr Tick kKeyframeIntervalTicks = 600;
 
 /// First record of a log: everything that the match was started with.
