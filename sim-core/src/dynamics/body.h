@@ -1,43 +1,44 @@
 #pragma once
 
+#include "lockwind/schema.h"
+#include "lockwind/types.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
-
-#include "lockwind/schema.h"
-#include "lockwind/types.h"
 
 namespace lockwind {
 
 /// What moves: row of the arena's section "body", sorted by id. Raw fixed-point values.
 struct BodyMotion {
     std::uint64_t id;
-    std::int64_t position[3];         // Q31.32 m
-    std::int32_t orientation[4];      // Q2.30 x y z w, unit
-    std::int32_t linear_velocity[3];  // Q11.20 m/s
-    std::int32_t angular_velocity[3]; // Q11.20 m/s: world angular velocity (rad/s) x gyration radius
-    std::int32_t fat_bounds[6];       // Q15.16 m: min xyz, max xyz
-    std::int32_t motion_sum[2];       // Q9.22 m moved since the stamps, see contact recycling
-    std::uint32_t motion_stamp[2];    // tick when motion_sum last passed its bound
+    std::int64_t position[3];        // Q31.32 m
+    std::int32_t orientation[4];     // Q2.30 x y z w, unit
+    std::int32_t linear_velocity[3]; // Q11.20 m/s
+    std::int32_t
+        angular_velocity[3];       // Q11.20 m/s: world angular velocity (rad/s) x gyration radius
+    std::int32_t fat_bounds[6];    // Q15.16 m: min xyz, max xyz
+    std::int32_t motion_sum[2];    // Q9.22 m moved since the stamps, see contact recycling
+    std::uint32_t motion_stamp[2]; // tick when motion_sum last passed its bound
 };
 static_assert(sizeof(BodyMotion) == 112);
 
 /// What a body is: row of "body_properties", same row as its BodyMotion. Written on creation only.
 struct BodyProperties {
-    std::int64_t inverse_mass;             // Q24.40 1/kg; 0 unless dynamic
-    std::int32_t size[3];                  // Q9.22 m: box half extents; sphere radius; capsule radius,
-                                           // half height of the segment; plane 0
-    std::int32_t bounding_radius;          // Q9.22 m; 0 for a plane
-    std::int32_t gyration_radius;          // Q9.22 m: sqrt(k_min k_max); see solver.md 4
-    std::int32_t inverse_gyration_radius;  // Q7.24 1/m
-    std::int32_t inverse_inertia[3];       // Q5.26: mass x gyration_radius^2 / I, principal = local axes
-    std::int32_t friction;                 // Q3.28
-    std::int32_t restitution;              // Q3.28
-    std::uint8_t mode;                     // BodyMode
-    std::uint8_t shape;                    // ShapeType
+    std::int64_t inverse_mass;    // Q24.40 1/kg; 0 unless dynamic
+    std::int32_t size[3];         // Q9.22 m: box half extents; sphere radius; capsule radius,
+                                  // half height of the segment; plane 0
+    std::int32_t bounding_radius; // Q9.22 m; 0 for a plane
+    std::int32_t gyration_radius; // Q9.22 m: sqrt(k_min k_max); see solver.md 4
+    std::int32_t inverse_gyration_radius; // Q7.24 1/m
+    std::int32_t inverse_inertia[3]; // Q5.26: mass x gyration_radius^2 / I, principal = local axes
+    std::int32_t friction;           // Q3.28
+    std::int32_t restitution;        // Q3.28
+    std::uint8_t mode;               // BodyMode
+    std::uint8_t shape;              // ShapeType
     std::uint8_t zero[2];
-    std::uint32_t spawn_count;             // bodies this one has spawned
-    std::uint32_t despawn_tick;            // low 32 bits of the tick that destroys it; 0 for never
+    std::uint32_t spawn_count;  // bodies this one has spawned
+    std::uint32_t despawn_tick; // low 32 bits of the tick that destroys it; 0 for never
 };
 static_assert(sizeof(BodyProperties) == 64);
 

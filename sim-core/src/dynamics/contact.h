@@ -1,25 +1,53 @@
 #pragma once
 
+#include "lockwind/schema.h"
+#include "lockwind/types.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
-#include "lockwind/schema.h"
-#include "lockwind/types.h"
-
 namespace lockwind {
 
-/// Two bodies whose fat bounds overlap, at least one dynamic: row of section "pair", sorted by (row_a, row_b).
+/// Two bodies whose fat bounds overlap, at least one dynamic: row of section "pair", sorted by
+/// (row_a, row_b).
 struct Pair {
     BodyRow row_a; // row_a < row_b
     BodyRow row_b;
-    std::uint32_t manifold; // row of section "manifold"; kNoIndex unless touching
-    std::uint32_t stamp;    // tick when the narrow phase last looked at it; 0 for never
-    std::uint8_t axis;      // box-box cache, see ManifoldCache
+    std::uint32_t manifold;   // row of section "manifold"; kNoIndex unless touching
+    std::uint32_t stamp;      // tick when the narrow phase last looked at it; 0 for never
+    std::uint8_t axis;        // box-box cache, see ManifoldCache
     std::uint8_t point_count; // 0 .. 4; 0 unless touching
     std::uint8_t zero[2];
 };
 static_assert(sizeof(Pair) == 20);
+
+/// The contact of a touching pair: row of section "manifold", found by Pair::manifold. A free slot
+/// is all zero bytes (a live one has points); the lowest free slot is taken first.
+///
+/// It keeps the geometry of the tick that made it. The solver's rows use those anchors; the
+/// separation follows the bodies: separation + normal . (centre_delta, anchors now - then), anchors
+/// turned with their bodies. B's anchor is anchor_a - centre_delta.
+struct Manifold {
+    BodyRow row_a; // of its pair
+    BodyRow row_b;
+    std::int32_t normal[3];       // Q2.30, world, from A to B
+    std::int32_t tangent[3];      // Q2.30, world; the second one is normal x tangent
+    std::int32_t centre_delta[3]; // Q9.22 m: from centre A to centre B
+    std::int32_t axis_separation; // Q9.22 m, see ManifoldCache
+    std::uint8_t point_count;     // 1 .. 4; 0 in a free slot
+    std::uint8_t zero[3];
+    std::int32_t friction_impulse[2]; // Q11.20 m/s: impulse x (1/m_a + 1/m_b), along the tangents
+    std::int32_t twist_impulse;       // Q11.20 m/s, at the smaller gyration radius
+    // By point; entries past point_count are 0.
+    std::int32_t normal_impulse[4]; // Q11.20 m/s
+    std::int32_t separation[4];     // Q9.22 m
+    std::uint32_t feature[4];
+    std::int32_t anchor_a[4 * 3]; // Q9.22 m, world, from centre A; xyz of each point
+    std::int32_t local_a[4 * 3];  // Q9.22 m, in A's frame
+    std::int32_t local_b[4 * 3];  // Q9.22 m, in B's frame
+};
+static_assert(sizeof(Manifold) == 256);
 
 inline constexpr std::array kPairFields{
     LOCKWIND_FIELD(Pair, row_a, 0, "", ""),
@@ -29,6 +57,25 @@ inline constexpr std::array kPairFields{
     LOCKWIND_FIELD(Pair, axis, 0, "", ""),
     LOCKWIND_FIELD(Pair, point_count, 0, "", ""),
     LOCKWIND_FIELD(Pair, zero, 0, "", ""),
+};
+
+inline constexpr std::array kManifoldFields{
+    LOCKWIND_FIELD(Manifold, row_a, 0, "", ""),
+    LOCKWIND_FIELD(Manifold, row_b, 0, "", ""),
+    LOCKWIND_FIELD(Manifold, normal, 30, "", "xyz"),
+    LOCKWIND_FIELD(Manifold, tangent, 30, "", "xyz"),
+    LOCKWIND_FIELD(Manifold, centre_delta, 22, "m", "xyz"),
+    LOCKWIND_FIELD(Manifold, axis_separation, 22, "m", ""),
+    LOCKWIND_FIELD(Manifold, point_count, 0, "", ""),
+    LOCKWIND_FIELD(Manifold, zero, 0, "", ""),
+    LOCKWIND_FIELD(Manifold, friction_impulse, 20, "m/s", ""),
+    LOCKWIND_FIELD(Manifold, twist_impulse, 20, "m/s", ""),
+    LOCKWIND_FIELD(Manifold, normal_impulse, 20, "m/s", ""),
+    LOCKWIND_FIELD(Manifold, separation, 22, "m", ""),
+    LOCKWIND_FIELD(Manifold, feature, 0, "", ""),
+    LOCKWIND_FIELD(Manifold, anchor_a, 22, "m", ""),
+    LOCKWIND_FIELD(Manifold, local_a, 22, "m", ""),
+    LOCKWIND_FIELD(Manifold, local_b, 22, "m", ""),
 };
 
 } // namespace lockwind

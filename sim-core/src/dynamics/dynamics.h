@@ -1,23 +1,22 @@
 #pragma once
 
+#include "base/table.h"
+#include "dynamics/body.h"
+#include "dynamics/contact.h"
+
+#include "lockwind/vector.h"
+
 #include <cstdint>
 #include <memory>
 #include <span>
 
-#include "base/table.h"
-#include "dynamics/body.h"
-#include "dynamics/contact.h"
-#include "lockwind/vector.h"
-
 namespace lockwind {
-
-struct Manifold;
 
 struct DynamicsSettings {
     std::uint32_t tick_rate_hz = 60;
     std::uint32_t substeps = 4;
-    Vec3 gravity;                  // m/s^2
-    Real linear_speed_max = 400.0; // m/s
+    Vec3 gravity;                   // m/s^2
+    Real linear_speed_max = 400.0;  // m/s
     Real angular_speed_max = 100.0; // rad/s
     std::uint32_t body_capacity = 0;
     std::uint32_t pair_capacity = 0;
@@ -32,7 +31,14 @@ struct DynamicsTables {
     Table<Manifold> manifolds;
 };
 
-enum class StepFault : std::uint8_t { none = 0, bodies_full = 1, pairs_full = 2, manifolds_full = 3, events_full = 4 };
+/// A capacity that ran out. The tables stay whole: no row is half-written.
+enum class StepFault : std::uint8_t {
+    none = 0,
+    bodies_full = 1,
+    pairs_full = 2,
+    manifolds_full = 3,
+    events_full = 4,
+};
 
 /// A pair that began or ceased to touch in this tick's narrow phase; in pair order.
 struct ContactChange {
@@ -41,8 +47,15 @@ struct ContactChange {
     bool begin;
 };
 
-/// The rigid-body step over the arena's tables. Holds settings and scratch only: nothing that a later
-/// tick reads, nothing allocated after construction.
+/// A pair that met at more than 1 m/s in this tick; in pair order.
+struct ContactHit {
+    BodyRow row_a;
+    BodyRow row_b;
+    std::int32_t impulse; // Q11.20 m/s: largest normal impulse of a substep / reduced mass
+};
+
+/// The rigid-body step over the arena's tables. Holds settings and scratch only: nothing that a
+/// later tick reads, nothing allocated after construction.
 class Dynamics {
 public:
     explicit Dynamics(const DynamicsSettings& settings);
@@ -59,6 +72,8 @@ public:
     void solve(const DynamicsTables& tables, std::uint32_t tick);
     /// Newton's restitution for contacts that approached faster than 1 m/s.
     void restitution(const DynamicsTables& tables);
+    /// Of the last solve and restitution.
+    std::span<const ContactHit> contact_hits() const;
 
     /// Drops what is only a cache; the results of later phases do not change by a bit.
     void drop_derived();
