@@ -1,0 +1,140 @@
+#include "scene/scene.h"
+
+#include "scene.pb.h"
+#include "scene/body_reader.h"
+#include "scene/field_reader.h"
+#include "scene/settings_reader.h"
+
+#include "lockwind/world.h"
+
+#include <google/protobuf/io/tokenizer.h>
+#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+#include <google/protobuf/text_format.h>
+
+namespace lockwind {
+namespace {
+
+using google::protobuf::TextFormat;
+
+/// Hands the text parser's complaints to SceneErrors.
+class ParserErrors : public google::protobuf::io::ErrorCollector {
+public:
+    explicit ParserErrors(SceneErrors& errors) : errors_(errors) {}
+    void AddError(int line,
+                  google::protobuf::io::ColumnNumber column,
+                  const std::string& what) override {
+        errors_.add(line, column, what);
+    }
+
+private:
+    SceneErrors& errors_;
+};
+
+bool parse_text(std::string_view text,
+                scene_text::Scene& scene,
+                TextFormat::ParseInfoTree& tree,
+                SceneErrors& errors) {
+    if (text.size() > kSceneTextSizeBytesMax) {
+        errors.add(-1,
+                   -1,
+                   "the text is longer than " + std::to_string(kSceneTextSizeBytesMax) +
+                       " bytes; use arrangements instead of single bodies");
+        return false;
+    }
+    ParserErrors parser_errors(errors);
+    TextFormat::Parser parser;
+    parser.RecordErrorsTo(&parser_errors);
+    parser.WriteLocationsTo(&tree);
+    parser.SetRecursionLimit(16);
+    google::protobuf::io::ArrayInputStream input(text.data(), static_cast<int>(text.size()));
+    return parser.Parse(&input, &scene) && !errors.any();
+}
+
+void read_name(const scene_text::Scene& scene, const FieldReader& reader, WorldDefinition& world) {
+    constexpr std::size_t kNameSizeMax = 64;
+    world.name = scene.name();
+    if (world.name.empty()) {
+        reader.fail("name", "is missing; begin the scene with one");
+    } else if (world.name.size() > kNameSizeMax) {
+        reader.fail("name", "is longer than 64 bytes");
+    }
+}
+
+struct SceneContent {
+    std::string description;
+    WorldDefinition world;
+};
+
+Result<SceneContent>
+read_scene(std::string_view text, std::string_view file_name, const SceneOptions& options) {
+    SceneErrors errors(file_name);
+    scene_text::Scene scene;
+    TextFormat::ParseInfoTree tree;
+    if (!parse_text(text, scene, tree, errors)) {
+        return Error{errors.message()};
+    }
+    const FieldReader reader(scene, tree, errors);
+    SceneContent content;
+    content.description = scene.description();
+    WorldDefinition& world = content.world;
+    read_name(scene, reader, world);
+    world.settings = read_settings(reader, options);
+    BodyReader bodies(scene, reader, world);
+    for (int index = 0; index < scene.body_size() && !errors.any(); ++index) {
+        bodies.read_body(index);
+    }
+    if (!errors.any()) {
+        bodies.read_pods(options.players);
+    }
+    if (errors.any()) {
+        return Error{errors.message()};
+    }
+    return content;
+}
+
+std::uint32_t count_dynamic(const std::vector<BodyDefinition>& bodies) {
+    std::uint32_t count = 0;
+    for (const BodyDefinition& body : bodies) {
+        count += body.mode == BodyMode::dynamic ? 1U : 0U;
+    }
+    return count;
+}
+
+} // namespace
+
+Result<WorldDefinition>
+parse_scene(std::string_view text, std::string_view file_name, const SceneOptions& options) {
+    Result<SceneContent> content = read_scene(text, file_name, options);
+    if (!content) {
+        return content.error();
+    }
+    return std::move(content).value().world;
+}
+
+Result<SceneReport> check_scene(std::string_view name_or_path) {
+    const Result<std::string> text = load_scene_text(name_or_path);
+    if (!text) {
+        return text.error();
+    }
+    SceneOptions options;
+    options.players = kEverySeat;
+    const Result<SceneContent> content = read_scene(text.value(), name_or_path, options);
+    if (!content) {
+        return content.error();
+    }
+    const WorldDefinition& world = content.value().world;
+    if (const Result<WorldPtr> created = World::create(world); !created) {
+        return Error{std::string(name_or_path) + ": " + created.error().message};
+    }
+    const auto pods = static_cast<std::uint32_t>(world.pods.size());
+    SceneReport report;
+    report.name = world.name;
+    report.description = content.value().description;
+    report.bodies = static_cast<std::uint32_t>(world.bodies.size()) - pods;
+    report.bodies_dynamic = count_dynamic(world.bodies) - pods;
+    report.players_max = pods;
+    report.tick_rate_hz = world.settings.tick_rate_hz;
+    return report;
+}
+
+} // namespace lockwind

@@ -1,0 +1,32 @@
+#include "scene/settings_reader.h"
+
+namespace lockwind {
+namespace {
+
+constexpr Range kTickRate{10, 240, "Hz"};
+constexpr Range kCapacity{1, 4'000'000, ""};
+
+} // namespace
+
+WorldSettings read_settings(const FieldReader& scene, const SceneOptions& options) {
+    const FieldReader reader = scene.nested("settings");
+    WorldSettings settings;
+    settings.tick_rate_hz = reader.count("tick_rate_hz", settings.tick_rate_hz, kTickRate);
+    settings.substeps = reader.count("substeps", settings.substeps, {1, 16, ""});
+    settings.gravity = reader.vector("gravity", settings.gravity, {-100, 100, "m/s^2"});
+    settings.linear_speed_max =
+        reader.real("linear_speed_max", settings.linear_speed_max, {1, 1000, "m/s"});
+    settings.angular_speed_max =
+        reader.real("angular_speed_max", settings.angular_speed_max, {1, 200, "rad/s"});
+    settings.bounds = reader.real("bounds", settings.bounds, {1, 30'000, "m"});
+    settings.body_capacity = reader.count("body_capacity", 0, kCapacity);
+    settings.pair_capacity = reader.count("pair_capacity", 0, kCapacity);
+    settings.manifold_capacity = reader.count("manifold_capacity", 0, kCapacity);
+    settings.seed = options.seed;
+    if (options.tick_rate_hz != 0) {
+        settings.tick_rate_hz = options.tick_rate_hz;
+    }
+    return settings;
+}
+
+} // namespace lockwind
