@@ -1,13 +1,13 @@
 #pragma once
 
+#include "lockwind/simulation.h"
+#include "lockwind/types.h"
+
 #include <array>
 #include <cstdint>
 #include <string>
 #include <variant>
 #include <vector>
-
-#include "lockwind/simulation.h"
-#include "lockwind/types.h"
 
 namespace lockwind {
 
@@ -17,6 +17,13 @@ inline constexpr PeerId kServerPeer = 0;
 inline constexpr PeerId kAllPeers = 0xffffffffU; // as a receiver only
 
 inline constexpr std::uint32_t kProtocolVersion = 1;
+
+/// Limits of what a message may carry, checked by the decoder before anything is allocated and by
+/// the sessions again.
+inline constexpr std::uint32_t kPlayersMax = 64;
+inline constexpr std::size_t kInputBatchTicksMax = 128;
+inline constexpr std::size_t kConfirmationTicksMax = 1024;
+inline constexpr std::size_t kHashReportEntriesMax = 256;
 
 /// What must be the same on both ends; compared field by field, a refusal names the field.
 struct MatchConfig {
@@ -39,7 +46,8 @@ struct Hello {
     std::uint32_t protocol_version = kProtocolVersion;
     std::string sim_version;
     std::string build_info;
-    std::uint64_t token = 0; // names the player: the same token gets its slot back
+    std::uint64_t token = 0;   // names the player: the same token gets its slot back; never 0
+    std::uint32_t attempt = 1; // number of the connection of this peer, from 1
 };
 
 /// server -> client, RELIABLE. A seat in the match.
@@ -48,7 +56,8 @@ struct Welcome {
     MatchConfig config;
     std::string sim_version;
     std::string build_info;
-    Tick resume_tick = 0; // > 0: a snapshot of this tick follows as a blob (reconnect)
+    Tick resume_tick = 0; // > 0: a snapshot of this tick follows as a blob (reconnect, late join)
+    std::uint32_t attempt = 1; // the Hello's
 };
 
 enum class RefuseReason : std::uint8_t {
@@ -67,7 +76,8 @@ struct Refuse {
     std::string message; // both values, for a person
 };
 
-/// client -> server, RELIABLE. The world is built (or loaded); repeated until the first Confirmation.
+/// client -> server, RELIABLE. The world is built (or loaded); repeated until a Confirmation whose
+/// own SlotAck is `attached`.
 struct Ready {
     Tick tick = 0;
     std::uint64_t state_hash = 0; // of state(tick)
@@ -89,14 +99,18 @@ struct ConfirmedTick {
 
 /// What the server tells each slot with every confirmation.
 struct SlotAck {
-    Tick input_tick = 0;         // inputs up to here have arrived
-    Tick hash_tick = 0;          // hash reports up to here have arrived and agree
-    std::uint64_t echo_us = 0;   // sent_us of the newest InputBatch
+    Tick input_tick = 0;            // inputs up to here have arrived
+    Tick hash_tick = 0;             // hash reports up to here have arrived and agree
+    std::uint64_t echo_us = 0;      // sent_us of the newest InputBatch; 0 before the first
+    std::uint32_t echo_hold_us = 0; // from that InputBatch's arrival to this message
+    bool attached = false; // the slot's holder is known to have the world (its Ready arrived)
 };
 
-/// server -> all, BEST_EFFORT. Every tick that some client has not acknowledged.
+/// server -> all (or to one that is far behind), BEST_EFFORT. Every tick that some client has not
+/// acknowledged. No ticks: only the acknowledgements, to be heard of.
 struct Confirmation {
     Tick first_tick = 0;
+    Tick confirmed_tick = 0; // the newest of the server; ticks up to here exist
     std::vector<ConfirmedTick> ticks;
     std::vector<SlotAck> acks; // one per slot
 };
@@ -131,7 +145,8 @@ struct ChunkAck {
     std::uint32_t index = 0;
 };
 
-/// server -> client, RELIABLE. Asks for a desync report: re-simulate agreed_tick .. bad_tick in trace mode.
+/// server -> client, RELIABLE. Asks for a desync report: re-simulate agreed_tick .. bad_tick in
+/// trace mode.
 struct DesyncQuery {
     Tick agreed_tick = 0;
     Tick bad_tick = 0;
@@ -139,16 +154,34 @@ struct DesyncQuery {
     std::uint64_t client_hash = 0; // as reported
 };
 
-enum class EndReason : std::uint8_t { complete = 0, desync = 1, stopped = 2, left = 3, failed = 4 };
+enum class EndReason : std::uint8_t {
+    complete = 0,
+    desync = 1,
+    stopped = 2,
+    left = 3,
+    failed = 4,
+    dropped = 5, // to one client: its slot was dropped; the same token may come back with a Hello
+};
 
-/// server -> all, or client -> server (left), RELIABLE. The sender leaves; last_tick is the last confirmed.
+/// server -> all or one, or client -> server (left), RELIABLE. The sender is done; last_tick is the
+/// last confirmed. The server repeats it until each client has answered with its own End (left).
 struct End {
     EndReason reason = EndReason::complete;
     Tick last_tick = 0;
+    std::uint32_t attempt = 0; // of the connection that ends; 0: of all
     std::string message;
 };
 
-using Message = std::variant<Hello, Welcome, Refuse, Ready, InputBatch, Confirmation, HashReport, Chunk,
-                             ChunkAck, DesyncQuery, End>;
+using Message = std::variant<Hello,
+                             Welcome,
+                             Refuse,
+                             Ready,
+                             InputBatch,
+                             Confirmation,
+                             HashReport,
+                             Chunk,
+                             ChunkAck,
+                             DesyncQuery,
+                             End>;
 
 } // namespace lockwind
