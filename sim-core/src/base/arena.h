@@ -10,6 +10,7 @@
 #include <memory>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace lockwind {
@@ -28,17 +29,18 @@ public:
 
     StateSchema schema() const { return schema_; }
     std::uint32_t section_count() const { return static_cast<std::uint32_t>(schema_.size()); }
+    std::uint32_t state_section_count() const { return state_section_count_; }
     std::uint32_t capacity(std::uint32_t section) const { return places_[section].capacity; }
-    std::uint32_t row_count(std::uint32_t section) const { return counts()[section]; }
+    std::uint32_t row_count(std::uint32_t section) const { return *count(section); }
     /// Shrinking zeroes the rows that die.
-    void set_row_count(std::uint32_t section, std::uint32_t count);
+    void set_row_count(std::uint32_t section, std::uint32_t new_count);
 
     template <class Row>
     Table<Row> table(std::uint32_t section) {
         static_assert(std::is_trivially_copyable_v<Row> && alignof(Row) <= kAlignmentBytes);
         LOCKWIND_ASSERT(section < section_count() && sizeof(Row) == schema_[section].stride_bytes);
         return {reinterpret_cast<Row*>(buffer_.get() + places_[section].offset_bytes),
-                counts() + section,
+                count(section),
                 places_[section].capacity};
     }
 
@@ -61,13 +63,19 @@ private:
         void operator()(std::byte* buffer) const;
     };
 
-    std::uint32_t* counts() { return reinterpret_cast<std::uint32_t*>(buffer_.get()); }
-    const std::uint32_t* counts() const {
-        return reinterpret_cast<const std::uint32_t*>(buffer_.get());
+    const std::uint32_t* count(std::uint32_t section) const {
+        return section < state_section_count_
+                   ? reinterpret_cast<const std::uint32_t*>(buffer_.get()) + section
+                   : derived_counts_.data() + (section - state_section_count_);
+    }
+    std::uint32_t* count(std::uint32_t section) {
+        return const_cast<std::uint32_t*>(std::as_const(*this).count(section));
     }
 
     StateSchema schema_;
+    std::uint32_t state_section_count_ = 0;
     std::vector<Place> places_;
+    std::vector<std::uint32_t> derived_counts_;
     std::size_t size_bytes_ = 0;
     std::unique_ptr<std::byte, Free> buffer_;
 };

@@ -27,7 +27,7 @@ std::size_t canonical_size_bytes(const StateArena& arena);
 /// Replaces `out`. Allocates only where `out` is too small.
 void save_canonical(const StateArena& arena, std::vector<std::byte>& out);
 
-/// Where each section lies in `bytes` (an empty span for a derived one). Refuses sizes that do not
+/// Where the rows of each `state` section lie in `bytes`. Refuses sizes that do not
 /// fit the counts; checks nothing else. The counts are not compared to any capacity.
 Result<std::vector<std::span<const std::byte>>> split_canonical(StateSchema schema,
                                                                 std::span<const std::byte> bytes);
