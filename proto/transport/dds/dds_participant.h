@@ -54,6 +54,7 @@ public:
 private:
     friend class DdsTransport;
     DdsParticipant() = default;
+    Status create_entities();
 
     DdsRole role_ = DdsRole::client;
     DdsEntity domain_;

@@ -9,6 +9,9 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
+
+struct lockwind_Envelope; // of envelope.idl
 
 namespace lockwind {
 
@@ -52,8 +55,13 @@ private:
     };
 
     DdsTransport() = default;
-    Status create_flow(Channel channel, std::int32_t publisher, std::int32_t subscriber);
+    Status create_entities(const std::string& partition);
+    Status create_flow(Channel channel);
     void receive_flow(Channel channel, std::vector<Packet>& out);
+    void accept(const lockwind_Envelope& envelope,
+                std::uint64_t writer,
+                Channel channel,
+                std::vector<Packet>& out);
     std::vector<SenderRegistry::Writer> matched_writers() const;
 
     std::shared_ptr<DdsParticipant> participant_;
