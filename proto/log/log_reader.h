@@ -46,14 +46,15 @@ public:
 
     /// The next record is again the first after the header.
     void rewind();
-    /// Goes on right behind the record that ends at `offset` and left `last_tick` as the last tick.
+    /// Goes on with the record that begins at `offset` (a value that offset() had); `last_tick` is
+    /// the last tick before it.
     void seek(std::uint64_t offset, Tick last_tick);
     /// Where the record that next() gives next begins.
     std::uint64_t offset() const { return file_.offset(); }
 
 private:
     LogReader(RecordReader file, LogHeader header, std::uint64_t first_offset);
-    std::optional<LogRecord> fail(std::string what, std::uint64_t good_bytes);
+    std::optional<LogRecord> fail(std::string what);
     std::string check(const LogRecord& record) const;
 
     RecordReader file_;
@@ -72,14 +73,15 @@ struct LogIndex {
     struct Keyframe {
         Tick tick = 0;
         std::uint64_t offset = 0; // of the keyframe's record
-        Tick last_tick = 0;       // last tick record before it
     };
     Tick ticks = 0;          // last whole tick
     Tick hashed_to_tick = 0; // last tick with a hash: as far as a replay can verify
     std::uint64_t hashes = 0;
     std::uint64_t substituted_inputs = 0;
+    std::uint64_t events = 0;
     std::uint32_t joins = 0;
     std::uint32_t leaves = 0;
+    std::uint32_t pauses = 0;
     std::uint32_t desyncs = 0;
     std::vector<Keyframe> keyframes; // ascending
     std::optional<LogSummary> summary;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "log/log_format.h"
+#include "log/log_reader.h"
 #include "log/record_file.h"
 
 #include "lockwind/event.h"
@@ -30,11 +30,11 @@ public:
     /// Call before the tick's confirmation is sent. Ticks are consecutive from 1; one input per
     /// slot, none of them predicted.
     Status write_tick(Tick tick, std::span<const SlotInput> inputs);
-    /// Hash of state(tick), right after the step.
+    /// Hash of state(tick) for the last tick written, before the next is (tick 0 before the first).
     Status write_hash(Tick tick, std::uint64_t hash);
     /// True where state(tick) is due as a keyframe (every kKeyframeIntervalTicks).
     static bool keyframe_due(Tick tick) { return tick % kKeyframeIntervalTicks == 0; }
-    /// `state` as Simulation::save gives it; written compressed.
+    /// `state` as Simulation::save gives it, of the last tick written; stored compressed.
     Status write_keyframe(Tick tick, std::uint64_t hash, std::span<const std::byte> state);
     Status write_join(const JoinRecord& join);
     Status write_leave(const LeaveRecord& leave);
@@ -52,6 +52,7 @@ public:
 
 private:
     LogWriter(RecordWriter file, const LogHeader& header);
+    Status append(const LogRecord& record);
 
     RecordWriter file_;
     std::uint32_t players_;
