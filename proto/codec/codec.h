@@ -1,5 +1,6 @@
 #pragma once
 
+#include "session/match_config.h"
 #include "session/messages.h"
 
 #include "lockwind/result.h"
@@ -32,10 +33,7 @@ inline constexpr std::size_t kMessageSizeBytesMax = 64'000; // of any encoded me
 inline constexpr std::size_t kNameSizeBytesMax = 64; // match, mode, sim_version, Refuse::field
 inline constexpr std::size_t kSceneNameSizeBytesMax = 256;
 inline constexpr std::size_t kTextSizeBytesMax = 1'024; // build_info; messages for a person
-inline constexpr std::size_t kSceneTextSizeBytesMax = 60'000;
-inline constexpr std::uint32_t kTickRateHzMax = 1'000;
-inline constexpr std::uint32_t kInputDelayTicksMax = 128;
-inline constexpr std::uint32_t kHashIntervalTicksMax = 3'600;
+inline constexpr std::size_t kConfigSceneTextSizeBytesMax = 60'000; // must fit a Welcome
 
 /// Name of the message's kind, as in the .proto.
 std::string_view kind_name(const Message& message);

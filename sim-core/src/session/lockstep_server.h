@@ -139,7 +139,7 @@ public:
     const MatchConfig& config() const;
     SlotStatus slot_status(Slot slot) const;
     const LockstepServerCounters& counters() const;
-    std::span<const DesyncRecord> desyncs() const;
+    std::span<const HashMismatch> desyncs() const;
     /// States and inputs from this tick on may still be asked for; older ones can be dropped.
     Tick oldest_needed_tick() const;
     /// Inputs of a confirmed tick, in slot order; empty where no longer kept.

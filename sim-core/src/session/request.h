@@ -55,7 +55,7 @@ struct SessionEvent {
 
 /// A slot's hash of `bad_tick` differs from the server's. `agreed_tick` is the last one on which
 /// they agreed.
-struct DesyncRecord {
+struct HashMismatch {
     Slot slot = 0;
     Tick agreed_tick = 0;
     Tick bad_tick = 0;
@@ -108,14 +108,14 @@ struct RestoreRequest {
 /// client: re-simulate agreed_tick .. bad_tick in trace mode, from the kept states and
 /// session.confirmed_inputs(tick), and call session.send_blob(BlobKind::desync_report, bytes).
 struct DesyncReportRequest {
-    DesyncRecord desync;
+    HashMismatch desync;
 };
 
 /// server: write the bundle of a desync. `report` is what the client sent; empty where nothing came
 /// in time. The server's own state of agreed_tick is in the StateHistory, its inputs in
 /// session.confirmed_inputs(tick).
 struct BundleRequest {
-    DesyncRecord desync;
+    HashMismatch desync;
     std::vector<std::byte> report;
 };
 

@@ -1,0 +1,281 @@
+#include "match/match_server.h"
+
+#include "codec/codec.h"
+#include "forensics/bundle.h"
+#include "scene/scene.h"
+
+#include <chrono>
+#include <utility>
+#include <variant>
+
+namespace lockwind {
+
+namespace {
+
+/// States that may be asked for: those whose hashes are not yet agreed on by all.
+constexpr std::size_t kHistoryCapacity = 256;
+
+std::uint64_t unix_time_us() {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    return static_cast<std::uint64_t>(
+        std::chrono::duration_cast<std::chrono::microseconds>(now).count());
+}
+
+/// Contacts come and go by the hundred a tick and follow from the inputs; the log keeps what a
+/// person looks for.
+bool is_logged(const Event& event) {
+    return event.type == EventType::created || event.type == EventType::destroyed ||
+           event.type == EventType::score;
+}
+
+LockstepServerSettings session_settings(const MatchSettings& settings,
+                                        const WorldSimulation& simulation) {
+    LockstepServerSettings session;
+    session.config = settings.config;
+    session.sim_version = sim_version();
+    session.build_info = build_info();
+    session.input_size_bytes = simulation.input_size_bytes();
+    session.initial_state_hash = simulation.state_hash();
+    session.stall_policy = settings.stall_policy;
+    session.join_timeout_ms = settings.join_timeout_ms;
+    return session;
+}
+
+} // namespace
+
+Result<std::unique_ptr<MatchServer>> MatchServer::create(const MatchSettings& settings,
+                                                         Transport& transport) {
+    const MatchConfig& config = settings.config;
+    if (const Status valid = check(config); !valid) {
+        return valid.error();
+    }
+    const SceneOptions options{config.players, config.seed, config.tick_rate_hz};
+    Result<WorldDefinition> definition = parse_scene(config.scene_text, config.scene_name, options);
+    if (!definition) {
+        return definition.error();
+    }
+    Result<std::unique_ptr<WorldSimulation>> simulation =
+        WorldSimulation::create(definition.value());
+    if (!simulation) {
+        return simulation.error();
+    }
+    LogHeader header;
+    header.sim_version = sim_version();
+    header.build_info = build_info();
+    header.started_unix_us = unix_time_us();
+    header.config = config;
+    header.input_size_bytes = simulation.value()->input_size_bytes();
+    Result<std::unique_ptr<LogWriter>> log = LogWriter::create(settings.log_path, header);
+    if (!log) {
+        return log.error();
+    }
+    const LockstepServerSettings session = session_settings(settings, *simulation.value());
+    return std::unique_ptr<MatchServer>(
+        new MatchServer(std::move(simulation).value(), std::move(log).value(), session, transport));
+}
+
+MatchServer::MatchServer(std::unique_ptr<WorldSimulation> simulation,
+                         std::unique_ptr<LogWriter> log,
+                         const LockstepServerSettings& settings,
+                         Transport& transport)
+    : simulation_(std::move(simulation)), log_(std::move(log)), session_(settings),
+      transport_(transport), history_(kHistoryCapacity) {
+    history_.save(*simulation_, settings.initial_state_hash);
+}
+
+void MatchServer::poll() {
+    receive();
+    session_.update(transport_.clock_us());
+    for (std::vector<Request> requests = session_.take_requests(); !requests.empty();
+         requests = session_.take_requests()) {
+        for (const Request& request : requests) {
+            std::visit(
+                [this](const auto& wanted) {
+                    using Wanted = std::decay_t<decltype(wanted)>;
+                    if constexpr (requires { this->execute(wanted); }) {
+                        execute(wanted);
+                    } else {
+                        static_assert(std::is_same_v<Wanted, CreateRequest> ||
+                                      std::is_same_v<Wanted, RestoreRequest> ||
+                                      std::is_same_v<Wanted, DesyncReportRequest>);
+                        LOCKWIND_ASSERT(!"a client's request");
+                    }
+                },
+                request);
+        }
+        session_.update(transport_.clock_us());
+    }
+    history_.discard_before(session_.oldest_needed_tick());
+    if (session_.ended()) {
+        finish();
+    }
+}
+
+void MatchServer::receive() {
+    packets_.clear();
+    transport_.receive(packets_);
+    MessageLimits limits;
+    limits.direction = Direction::to_server;
+    for (const Packet& packet : packets_) {
+        const Result<Message> message = decode(packet.bytes, limits);
+        if (!message) {
+            ++figures_.packets_malformed;
+            continue;
+        }
+        session_.receive(packet.from, message.value(), transport_.clock_us());
+    }
+}
+
+void MatchServer::execute(const SendRequest& request) {
+    encode(request.message, encoded_);
+    const Channel channel =
+        request.delivery == Delivery::reliable ? Channel::reliable : Channel::best_effort;
+    // A full queue loses the message; the session repeats whatever is not acknowledged.
+    static_cast<void>(transport_.send(request.to, channel, encoded_));
+}
+
+void MatchServer::execute(const PersistRequest& request) {
+    require(log_->write_tick(request.tick, request.inputs));
+}
+
+void MatchServer::execute(const AdvanceRequest& request) {
+    if (failed_) {
+        return;
+    }
+    const std::uint64_t began_us = transport_.clock_us();
+    require(simulation_->advance(request.inputs));
+    if (failed_) {
+        return;
+    }
+    const std::uint64_t hash = request.hash_due ? simulation_->state_hash() : 0;
+    figures_.step_us.add(transport_.clock_us() - began_us);
+    figures_.contacts.add(simulation_->world().counts().contacts);
+    if (request.hash_due) {
+        history_.save(*simulation_, hash);
+        require(log_->write_hash(request.tick, hash));
+        if (LogWriter::keyframe_due(request.tick)) {
+            require(log_->write_keyframe(request.tick, hash, history_.find(request.tick)->bytes));
+        }
+    }
+    record_events(request.tick);
+    session_.advanced(request.tick, hash, began_us);
+}
+
+void MatchServer::execute(const SnapshotRequest& request) {
+    std::vector<std::byte> bytes;
+    simulation_->save(bytes);
+    session_.snapshot_saved(
+        request.slot, request.tick, simulation_->state_hash(), std::move(bytes));
+}
+
+void MatchServer::execute(const BundleRequest& request) {
+    Result<DesyncOutcome> outcome = trace_desync(request);
+    if (outcome) {
+        desyncs_.push_back(std::move(outcome).value());
+    } else {
+        desyncs_.push_back({request.desync, "", "", outcome.error().message});
+    }
+}
+
+void MatchServer::execute(const NotifyRequest& request) {
+    require(record_session_event(request.event));
+    if (listener_) {
+        listener_(request.event);
+    }
+}
+
+void MatchServer::record_events(Tick tick) {
+    logged_events_.clear();
+    for (const Event& event : simulation_->world().events()) {
+        figures_.created += event.type == EventType::created ? 1 : 0;
+        figures_.destroyed += event.type == EventType::destroyed ? 1 : 0;
+        figures_.scores += event.type == EventType::score ? 1 : 0;
+        if (is_logged(event)) {
+            logged_events_.push_back(event);
+        }
+    }
+    if (!logged_events_.empty()) {
+        require(log_->write_events(tick, logged_events_));
+    }
+}
+
+Status MatchServer::record_session_event(const SessionEvent& event) {
+    switch (event.kind) {
+    case SessionEventKind::joined:
+    case SessionEventKind::reconnected:
+        return log_->write_join({event.tick,
+                                 event.slot,
+                                 event.kind == SessionEventKind::reconnected,
+                                 session_.slot_status(event.slot).build_info});
+    case SessionEventKind::left:
+        return log_->write_leave({event.tick, event.slot, LeaveReason::left});
+    case SessionEventKind::dropped:
+        return log_->write_leave({event.tick, event.slot, LeaveReason::dropped});
+    case SessionEventKind::paused:
+        paused_at_us_ = transport_.clock_us();
+        return Success{};
+    case SessionEventKind::unpaused:
+        return log_->write_pause({event.tick, transport_.clock_us() - paused_at_us_, event.text});
+    default:
+        return Success{};
+    }
+}
+
+Result<DesyncOutcome> MatchServer::trace_desync(const BundleRequest& request) {
+    const HashMismatch& desync = request.desync;
+    const SavedState* agreed = history_.find(desync.agreed_tick);
+    const SavedState* bad = history_.find(desync.bad_tick);
+    if (agreed == nullptr || bad == nullptr) {
+        return Error{"the server no longer has its states of ticks " +
+                     std::to_string(desync.agreed_tick) + " and " +
+                     std::to_string(desync.bad_tick)};
+    }
+    std::vector<std::vector<SlotInput>> inputs;
+    for (Tick tick = desync.agreed_tick + 1; tick <= desync.bad_tick; ++tick) {
+        const std::span<const SlotInput> confirmed = session_.confirmed_inputs(tick);
+        inputs.emplace_back(confirmed.begin(), confirmed.end());
+    }
+    DesyncEvidence evidence;
+    evidence.slot = desync.slot;
+    evidence.interval = {desync.agreed_tick, agreed->bytes, inputs};
+    evidence.server_hash = desync.server_hash;
+    evidence.client_hash = desync.client_hash;
+    evidence.server_state = bad->bytes;
+    evidence.server = {std::string(sim_version()), std::string(build_info()), session_.config()};
+    const Result<Bundle> bundle = make_bundle(*simulation_, evidence, request.report);
+    if (!bundle) {
+        return bundle.error();
+    }
+    const std::string path = bundle_path(log_->path(), desync.slot, desync.bad_tick);
+    if (const Status written = write_bundle(path, bundle.value()); !written) {
+        return written.error();
+    }
+    return DesyncOutcome{desync, path, std::string(to_text(bundle.value().verdict)), ""};
+}
+
+void MatchServer::require(const Status& status) {
+    if (!status && !failed_) {
+        failed_ = true;
+        session_.fail(status.error().message);
+    }
+}
+
+void MatchServer::finish() {
+    if (finished_) {
+        return;
+    }
+    finished_ = true;
+    LogSummary summary;
+    summary.ticks = session_.confirmed_tick();
+    summary.state_hash_tick = session_.state_hash_tick();
+    summary.state_hash = session_.state_hash();
+    summary.desyncs = static_cast<std::uint32_t>(session_.counters().desyncs);
+    summary.reason = session_.end_reason();
+    summary.message = session_.end_message();
+    summary.ended_unix_us = unix_time_us();
+    if (!failed_) {
+        require(log_->write_summary(summary));
+    }
+}
+
+} // namespace lockwind
