@@ -1,8 +1,6 @@
 #include "scene/arrangement.h"
 
-#include "scene/turn.h"
-
-#include "lockwind/integer.h"
+#include "lockwind/trig.h"
 
 namespace lockwind {
 namespace {
@@ -24,17 +22,7 @@ private:
 
 /// Offset of place `index` among `count` that stand `pitch` apart about 0.
 Real centred(std::uint32_t index, std::uint32_t count, Real pitch) {
-    const std::int64_t halves = 2 * std::int64_t{index} - (std::int64_t{count} - 1);
-    return Real::from_raw(halves * pitch.raw() / 2);
-}
-
-Real stacked(std::uint32_t layer, Real pitch) {
-    return Real::from_raw(std::int64_t{layer} * pitch.raw());
-}
-
-Real moved(Real offset, Real jitter, Real draw) {
-    constexpr std::int64_t kOne = std::int64_t{1} << Real::kFraction;
-    return Real::from_raw(offset.raw() + multiply_divide(jitter.raw(), draw.raw(), kOne));
+    return (Real(2 * index) - Real(count - 1)) * pitch / Real(2);
 }
 
 std::uint32_t ceil_cube_root(std::uint32_t count) {
@@ -58,9 +46,9 @@ std::vector<Placement> arrange_grid(const GridLayout& layout) {
                 const Real draw_x = draws.next();
                 const Real draw_z = draws.next();
                 Placement place;
-                place.offset.x = moved(centred(x, count_x, layout.pitch.x), layout.jitter, draw_x);
-                place.offset.y = stacked(y, layout.pitch.y);
-                place.offset.z = moved(centred(z, count_z, layout.pitch.z), layout.jitter, draw_z);
+                place.offset.x = centred(x, count_x, layout.pitch.x) + layout.jitter * draw_x;
+                place.offset.y = Real(y) * layout.pitch.y;
+                place.offset.z = centred(z, count_z, layout.pitch.z) + layout.jitter * draw_z;
                 places.push_back(place);
             }
         }
@@ -75,7 +63,7 @@ std::vector<Placement> arrange_pyramid(std::uint32_t base, Real pitch_x, Real pi
         for (std::uint32_t index = 0; index < length; ++index) {
             Placement place;
             place.offset.x = centred(index, length, pitch_x);
-            place.offset.y = stacked(row, pitch_y);
+            place.offset.y = Real(row) * pitch_y;
             places.push_back(place);
         }
     }
@@ -90,27 +78,28 @@ std::vector<Placement> arrange_heap(const HeapLayout& layout) {
     for (std::uint32_t index = 0; index < layout.count; ++index) {
         Placement place;
         place.offset.x = centred(index % side, side, layout.pitch);
-        place.offset.y = stacked(index / (side * side), layout.pitch);
+        place.offset.y = Real(index / (side * side)) * layout.pitch;
         place.offset.z = centred(index / side % side, side, layout.pitch);
         RealQuat drawn;
         drawn.x = draws.next();
         drawn.y = draws.next();
         drawn.z = draws.next();
         drawn.w = draws.next();
-        place.orientation = normalised(drawn);
+        place.orientation = normalized(drawn);
         places.push_back(place);
     }
     return places;
 }
 
 std::vector<Placement> arrange_ring(std::uint32_t players, Real radius) {
+    constexpr Angle kHalfTurn = Angle::from_turns(0.5);
     std::vector<Placement> places;
     for (std::uint32_t slot = 0; slot < players; ++slot) {
-        const Real degrees = Real::from_raw(Real(360).raw() * slot / players);
+        const Angle angle = Angle::from_turns(Real(slot) / Real(players));
+        const SinCos<Real> circle = sincos(angle);
         Placement place;
-        place.offset = on_circle(degrees, radius);
-        place.orientation =
-            rotation_about({0, 1, 0}, Real::from_raw(degrees.raw() + Real(180).raw()));
+        place.offset = {radius * circle.sin, 0, radius * circle.cos};
+        place.orientation = from_axis_angle({0, 1, 0}, angle + kHalfTurn);
         places.push_back(place);
     }
     return places;

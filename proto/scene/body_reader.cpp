@@ -2,7 +2,8 @@
 
 #include "geometry/mass.h"
 #include "scene/scene.h"
-#include "scene/turn.h"
+
+#include "lockwind/trig.h"
 
 namespace lockwind {
 namespace {
@@ -33,14 +34,8 @@ bool is_zero(const Vec3& v) {
     return v == Vec3{};
 }
 
-Vec3 sum(const Vec3& a, const Vec3& b) {
-    return {Real::from_raw(a.x.raw() + b.x.raw()),
-            Real::from_raw(a.y.raw() + b.y.raw()),
-            Real::from_raw(a.z.raw() + b.z.raw())};
-}
-
 bool inside(Real value, Real bound) {
-    return -bound.raw() <= value.raw() && value <= bound;
+    return -bound <= value && value <= bound;
 }
 
 bool is_arranged(const scene_text::Body& body) {
@@ -156,7 +151,7 @@ void BodyReader::read_turn(const scene_text::Body& body,
         if (read == RealQuat{0, 0, 0, 0}) {
             reader.fail("orientation", "is 0; give a quaternion, w: 1 for none");
         }
-        definition.orientation = normalised(read);
+        definition.orientation = normalized(read);
     } else if (body.has_rotation()) {
         const FieldReader rotation = reader.nested("rotation");
         const Vec3 axis = rotation.vector("axis", {}, kComponent);
@@ -164,7 +159,8 @@ void BodyReader::read_turn(const scene_text::Body& body,
             rotation.fail("axis", "is 0; give a direction, such as { y: 1 }");
         }
         const Real degrees = rotation.real("degrees", 0, {-360, 360, "degrees"});
-        definition.orientation = is_zero(axis) ? RealQuat{} : rotation_about(axis, degrees);
+        definition.orientation =
+            from_axis_angle(normalized(axis), Angle::from_turns(degrees / Real(360)));
     }
     if (body.has_heap() && body.turn_case() != scene_text::Body::TURN_NOT_SET) {
         reader.fail("heap", "draws its bodies' orientations; leave out the body's own");
@@ -308,7 +304,7 @@ void BodyReader::append(const BodyDefinition& definition,
                         const FieldReader& reader) {
     BodyDefinition body = definition;
     body.id = world_.bodies.size() + 1;
-    body.position = sum(definition.position, place.offset);
+    body.position = definition.position + place.offset;
     body.orientation = place.orientation;
     const Real bounds = world_.settings.bounds;
     if (!inside(body.position.x, bounds) || !inside(body.position.y, bounds) ||

@@ -25,8 +25,9 @@ std::optional<Real> to_real(double value) {
     if (shift >= 0) {
         magnitude = mantissa << static_cast<unsigned>(shift);
     } else if (shift >= -kMantissaBits - 1) {
+        // A half goes up, so that of a negative value's magnitude down.
         const auto drop = static_cast<unsigned>(-shift);
-        magnitude = (mantissa + (1ULL << (drop - 1))) >> drop;
+        magnitude = (mantissa + (1ULL << (drop - 1)) - (negative ? 1 : 0)) >> drop;
     }
     const auto raw = static_cast<std::int64_t>(magnitude);
     return Real::from_raw(negative ? -raw : raw);
