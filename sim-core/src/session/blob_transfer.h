@@ -61,8 +61,8 @@ struct Blob {
 class BlobReceiver {
 public:
     /// From now on one blob of this kind and at most this size is taken; forgets a half-received
-    /// one.
-    void expect(BlobKind kind, std::size_t size_bytes_max);
+    /// one. Transfers numbered below `transfer_min` are of an earlier connection and ignored.
+    void expect(BlobKind kind, std::size_t size_bytes_max, std::uint32_t transfer_min = 1);
     /// Takes nothing more.
     void close();
 
@@ -78,13 +78,14 @@ public:
 
 private:
     std::optional<Violation> check(const Chunk& chunk) const;
-    void take(const Chunk& chunk);
+    void append(const Chunk& chunk);
 
     BlobKind kind_ = BlobKind::snapshot;
     std::size_t size_bytes_max_ = 0;
     bool expecting_ = false;
-    std::uint32_t transfer_ = 0; // of the one under way or the last complete one; 0: none
-    std::uint32_t complete_transfer_ = 0;
+    std::uint32_t transfer_min_ = 1;
+    std::uint32_t transfer_ = 0;          // the one under way; 0: none
+    std::uint32_t complete_transfer_ = 0; // the last one that arrived whole; 0: none
     std::uint32_t blob_size_bytes_ = 0;
     std::uint32_t next_index_ = 0;
     std::vector<std::byte> bytes_;

@@ -9,6 +9,8 @@ namespace lockwind {
 inline constexpr std::uint32_t kTickRateHzMax = 1000;
 inline constexpr std::uint32_t kInputDelayTicksMax = 30;
 inline constexpr std::uint32_t kHashIntervalTicksMax = 60;
+/// 2^40 ticks last 290 years at 120 Hz; the bound keeps times in us within 64 bits.
+inline constexpr Tick kMatchTicksMax = Tick{1} << 40U;
 
 /// Ranges of every field; the Error names the field, its value and what is allowed.
 Status check(const MatchConfig& config);

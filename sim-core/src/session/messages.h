@@ -57,7 +57,8 @@ struct Welcome {
     std::string sim_version;
     std::string build_info;
     Tick resume_tick = 0; // > 0: a snapshot of this tick follows as a blob (reconnect, late join)
-    std::uint32_t attempt = 1; // the Hello's
+    std::uint32_t transfer = 0; // number of that blob's transfer; 0: none follows
+    std::uint32_t attempt = 1;  // the Hello's
 };
 
 enum class RefuseReason : std::uint8_t {
