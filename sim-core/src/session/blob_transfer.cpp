@@ -136,9 +136,12 @@ BlobReceiver::Outcome BlobReceiver::receive(const Chunk& chunk) {
         outcome.ack = ChunkAck{chunk.transfer, chunk.index}; // the first acknowledgement was lost
         return outcome;
     }
-    outcome.violation = check(chunk);
     const bool outdated = chunk.transfer < transfer_min_ || chunk.transfer < transfer_;
-    if (outcome.violation || outdated) {
+    if (expecting_ && chunk.transfer != 0 && outdated) {
+        return outcome;
+    }
+    outcome.violation = check(chunk);
+    if (outcome.violation) {
         return outcome;
     }
     if (chunk.transfer != transfer_) {

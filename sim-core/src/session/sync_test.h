@@ -37,7 +37,8 @@ public:
 
     /// Advances one tick, then checks the last check_distance_ticks ticks. Gives the first
     /// mismatch, which is then also in mismatch(), or nullopt; an Error is the simulation's own.
-    /// The simulation is left in the state of the first run. \pre mismatch() is empty
+    /// The simulation is left in the second run's state, so that a difference that is not hashed
+    /// yet has time to show. \pre mismatch() is empty
     Result<std::optional<SyncMismatch>> advance(std::span<const SlotInput> inputs);
 
     const std::optional<SyncMismatch>& mismatch() const { return mismatch_; }
@@ -47,17 +48,18 @@ public:
 private:
     struct Step {
         Tick tick = 0;
-        std::vector<SlotInput> inputs;
-        HashTree tree; // after the step
+        std::vector<SlotInput> inputs; // that led to it
+        HashTree tree;
     };
 
+    void remember(std::span<const SlotInput> inputs);
     Status check();
-    SyncMismatch compare(const Step& step, const HashTree& tree, Tick from) const;
+    void compare(const Step& step, Tick rolled_back_to);
 
     Simulation& simulation_;
     std::uint32_t check_distance_ticks_;
     StateHistory states_;
-    std::vector<Step> steps_; // oldest first, at most check_distance_ticks_
+    std::vector<Step> steps_; // the first run, oldest first: one per state in states_
     std::optional<SyncMismatch> mismatch_;
     std::uint64_t ticks_advanced_ = 0;
     std::uint64_t ticks_resimulated_ = 0;
