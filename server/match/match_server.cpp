@@ -28,6 +28,26 @@ bool is_logged(const Event& event) {
            event.type == EventType::score;
 }
 
+/// The match's world, or what is wrong with its configuration or scene.
+Result<std::unique_ptr<WorldSimulation>> make_simulation(const MatchConfig& config) {
+    if (const Status valid = check(config); !valid) {
+        return valid.error();
+    }
+    // Clients get the scene with their Welcome.
+    Welcome welcome;
+    welcome.config = config;
+    if (const Status sendable = check(Message{welcome}); !sendable) {
+        return sendable.error();
+    }
+    const SceneOptions options{config.players, config.seed, config.tick_rate_hz};
+    const Result<WorldDefinition> definition =
+        parse_scene(config.scene_text, config.scene_name, options);
+    if (!definition) {
+        return definition.error();
+    }
+    return WorldSimulation::create(definition.value());
+}
+
 LockstepServerSettings session_settings(const MatchSettings& settings,
                                         const WorldSimulation& simulation) {
     LockstepServerSettings session;
@@ -43,19 +63,15 @@ LockstepServerSettings session_settings(const MatchSettings& settings,
 
 } // namespace
 
+Status MatchServer::check_settings(const MatchConfig& config) {
+    const Result<std::unique_ptr<WorldSimulation>> simulation = make_simulation(config);
+    return simulation ? Status(Success{}) : Status(simulation.error());
+}
+
 Result<std::unique_ptr<MatchServer>> MatchServer::create(const MatchSettings& settings,
                                                          Transport& transport) {
     const MatchConfig& config = settings.config;
-    if (const Status valid = check(config); !valid) {
-        return valid.error();
-    }
-    const SceneOptions options{config.players, config.seed, config.tick_rate_hz};
-    Result<WorldDefinition> definition = parse_scene(config.scene_text, config.scene_name, options);
-    if (!definition) {
-        return definition.error();
-    }
-    Result<std::unique_ptr<WorldSimulation>> simulation =
-        WorldSimulation::create(definition.value());
+    Result<std::unique_ptr<WorldSimulation>> simulation = make_simulation(config);
     if (!simulation) {
         return simulation.error();
     }
@@ -135,7 +151,7 @@ void MatchServer::execute(const SendRequest& request) {
 }
 
 void MatchServer::execute(const PersistRequest& request) {
-    require(log_->write_tick(request.tick, request.inputs));
+    require_logged(log_->write_tick(request.tick, request.inputs));
 }
 
 void MatchServer::execute(const AdvanceRequest& request) {
@@ -143,8 +159,9 @@ void MatchServer::execute(const AdvanceRequest& request) {
         return;
     }
     const std::uint64_t began_us = transport_.clock_us();
-    require(simulation_->advance(request.inputs));
-    if (failed_) {
+    if (const Status stepped = simulation_->advance(request.inputs); !stepped) {
+        failed_ = true;
+        session_.fail(stepped.error().message);
         return;
     }
     const std::uint64_t hash = request.hash_due ? simulation_->state_hash() : 0;
@@ -152,9 +169,10 @@ void MatchServer::execute(const AdvanceRequest& request) {
     figures_.contacts.add(simulation_->world().counts().contacts);
     if (request.hash_due) {
         history_.save(*simulation_, hash);
-        require(log_->write_hash(request.tick, hash));
+        require_logged(log_->write_hash(request.tick, hash));
         if (LogWriter::keyframe_due(request.tick)) {
-            require(log_->write_keyframe(request.tick, hash, history_.find(request.tick)->bytes));
+            require_logged(
+                log_->write_keyframe(request.tick, hash, history_.find(request.tick)->bytes));
         }
     }
     record_events(request.tick);
@@ -178,7 +196,7 @@ void MatchServer::execute(const BundleRequest& request) {
 }
 
 void MatchServer::execute(const NotifyRequest& request) {
-    require(record_session_event(request.event));
+    require_logged(record_session_event(request.event));
     if (listener_) {
         listener_(request.event);
     }
@@ -195,7 +213,7 @@ void MatchServer::record_events(Tick tick) {
         }
     }
     if (!logged_events_.empty()) {
-        require(log_->write_events(tick, logged_events_));
+        require_logged(log_->write_events(tick, logged_events_));
     }
 }
 
@@ -253,9 +271,9 @@ Result<DesyncOutcome> MatchServer::trace_desync(const BundleRequest& request) {
     return DesyncOutcome{desync, path, std::string(to_text(bundle.value().verdict)), ""};
 }
 
-void MatchServer::require(const Status& status) {
+void MatchServer::require_logged(const Status& status) {
     if (!status && !failed_) {
-        failed_ = true;
+        failed_ = log_failed_ = true;
         session_.fail(status.error().message);
     }
 }
@@ -274,7 +292,7 @@ void MatchServer::finish() {
     summary.message = session_.end_message();
     summary.ended_unix_us = unix_time_us();
     if (!failed_) {
-        require(log_->write_summary(summary));
+        require_logged(log_->write_summary(summary));
     }
 }
 

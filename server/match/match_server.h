@@ -49,7 +49,10 @@ class MatchServer {
 public:
     using EventListener = std::function<void(const SessionEvent&)>;
 
-    /// An Error where the configuration or the scene is wrong or the log cannot be created.
+    /// An Error where the configuration or the scene is wrong, named as the user knows it.
+    static Status check_settings(const MatchConfig& config);
+
+    /// An Error as check_settings, or where the log cannot be created.
     static Result<std::unique_ptr<MatchServer>> create(const MatchSettings& settings,
                                                        Transport& transport);
 
@@ -67,6 +70,8 @@ public:
     const MatchFigures& figures() const { return figures_; }
     const std::vector<DesyncOutcome>& desyncs() const { return desyncs_; }
     const LogWriter& log() const { return *log_; }
+    /// The match failed because its log could not be written.
+    bool log_failed() const { return log_failed_; }
 
 private:
     MatchServer(std::unique_ptr<WorldSimulation> simulation,
@@ -84,7 +89,7 @@ private:
     void record_events(Tick tick);
     Status record_session_event(const SessionEvent& event);
     Result<DesyncOutcome> trace_desync(const BundleRequest& request);
-    void require(const Status& status);
+    void require_logged(const Status& status);
     void finish();
 
     std::unique_ptr<WorldSimulation> simulation_;
@@ -97,6 +102,7 @@ private:
     std::vector<DesyncOutcome> desyncs_;
     std::uint64_t paused_at_us_ = 0;
     bool failed_ = false;
+    bool log_failed_ = false;
     bool finished_ = false;
     std::vector<Packet> packets_;      // scratch
     std::vector<std::byte> encoded_;   // scratch

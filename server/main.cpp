@@ -1,0 +1,143 @@
+#include "match/match_server.h"
+#include "options.h"
+#include "program/console.h"
+#include "program/exit_code.h"
+#include "program/progress.h"
+#include "program/stop_signal.h"
+#include "report.h"
+#include "scene/scene.h"
+#include "transport/dds/dds_participant.h"
+#include "transport/dds/dds_transport.h"
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace lockwind {
+
+namespace {
+
+/// Longest sleep, so that a stop signal is heard soon.
+constexpr std::uint64_t kWaitUsMax = 50'000;
+
+int fail(ExitCode code, const std::string& message) {
+    say_error(message);
+    return code;
+}
+
+std::string default_log_path(const MatchConfig& config) {
+    return fmt::format("lockwind-{}-{:%Y%m%dT%H%M%SZ}.log",
+                       config.match,
+                       fmt::gmtime(std::chrono::system_clock::now()));
+}
+
+/// Nothing where a log can be created there, or the exit code of the error that was said.
+std::optional<int> log_path_trouble(const std::filesystem::path& path) {
+    std::error_code ignored;
+    if (std::filesystem::exists(path, ignored)) {
+        return fail(
+            kExitUsage,
+            fmt::format("--log {}: the file exists; a log is never overwritten", path.string()));
+    }
+    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+    if (access(folder.c_str(), W_OK) != 0) {
+        return fail(kExitFile,
+                    fmt::format("--log {}: the folder {} is missing or not writable",
+                                path.string(),
+                                folder.string()));
+    }
+    return std::nullopt;
+}
+
+void play(MatchServer& match, Transport& transport) {
+    const MatchConfig& config = match.session().config();
+    Progress progress("tick", config.ticks);
+    bool stopping = false;
+    while (!match.ended()) {
+        transport.wait_until(std::min(match.next_deadline_us(), transport.clock_us() + kWaitUsMax));
+        if (stop_requested() && !stopping) {
+            stopping = true;
+            match.stop("stopped by a signal");
+        }
+        match.poll();
+        progress.update(match.session().advanced_tick(),
+                        fmt::format("{} contacts, {} bodies",
+                                    match.simulation().world().counts().contacts,
+                                    match.simulation().world().body_count()));
+    }
+}
+
+int exit_code_of(const MatchServer& match) {
+    if (match.session().counters().desyncs > 0) {
+        return kExitDiverged;
+    }
+    if (match.session().end_reason() == EndReason::failed) {
+        return fail(match.log_failed() ? kExitFile : kExitNetwork, match.session().end_message());
+    }
+    return kExitDone;
+}
+
+int run(ServerOptions options) {
+    if (options.log_path.empty()) {
+        options.log_path = default_log_path(options.config);
+    }
+    if (const std::optional<int> trouble = log_path_trouble(options.log_path)) {
+        return *trouble;
+    }
+    Result<std::string> scene = load_scene_text(options.config.scene_name);
+    if (!scene) {
+        return fail(kExitFile, scene.error().message);
+    }
+    options.config.scene_text = std::move(scene).value();
+    if (const Status valid = MatchServer::check_settings(options.config); !valid) {
+        return fail(kExitUsage, valid.error().message);
+    }
+    DdsSettings dds;
+    dds.role = DdsRole::server;
+    dds.domain = options.domain;
+    dds.interface = options.listen;
+    Result<std::shared_ptr<DdsParticipant>> participant = DdsParticipant::open(dds);
+    if (!participant) {
+        return fail(kExitNetwork, participant.error().message);
+    }
+    Result<std::unique_ptr<DdsTransport>> transport =
+        DdsTransport::open(participant.value(), options.config.match, kServerPeer);
+    if (!transport) {
+        return fail(kExitUsage, transport.error().message);
+    }
+    MatchSettings settings;
+    settings.config = options.config;
+    settings.join_timeout_ms = options.join_timeout_s * 1000;
+    settings.log_path = options.log_path;
+    Result<std::unique_ptr<MatchServer>> match = MatchServer::create(settings, *transport.value());
+    if (!match) {
+        return fail(kExitFile, match.error().message);
+    }
+    match.value()->listen([](const SessionEvent& event) { say_info(describe(event)); });
+    catch_stop_signals();
+    say_info(fmt::format("match '{}' on domain {}: waiting for {} players",
+                         options.config.match,
+                         options.domain,
+                         options.config.players));
+    play(*match.value(), *transport.value());
+    if (options.json) {
+        fmt::print("{}\n", report_json(*match.value()));
+    } else {
+        fmt::print("{}", report_text(*match.value()));
+    }
+    std::fflush(stdout);
+    return exit_code_of(*match.value());
+}
+
+} // namespace
+
+} // namespace lockwind
+
+int main(int argc, char** argv) {
+    lockwind::set_up_messages();
+    const lockwind::ParsedOptions parsed = lockwind::parse_options(argc, argv);
+    return parsed.options ? lockwind::run(*parsed.options) : parsed.exit_code;
+}
