@@ -83,8 +83,8 @@ private:
     std::uint64_t seed_;
 };
 
-/// Hunts the nearest other pod: drives at it, circles when close, shoots when it faces it, and gives
-/// way to a whim now and then so that nobody pushes against a wall for ever.
+/// Hunts the nearest other pod: drives at it, circles when close, shoots when it faces it, and
+/// gives way to a whim now and then so that nobody pushes against a wall for ever.
 class Fight final : public Behaviour {
 public:
     explicit Fight(std::uint64_t seed) : seed_(seed), wander_(seed) {}
@@ -139,7 +139,9 @@ private:
 
 } // namespace
 
-std::span<const std::string_view> behaviour_names() { return kNames; }
+std::span<const std::string_view> behaviour_names() {
+    return kNames;
+}
 
 Result<std::unique_ptr<Behaviour>> make_behaviour(std::string_view name, std::uint64_t seed) {
     if (name == "fight") {

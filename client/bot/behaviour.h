@@ -1,18 +1,18 @@
 #pragma once
 
+#include "lockwind/player_input.h"
+#include "lockwind/result.h"
+#include "lockwind/world.h"
+
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string_view>
 
-#include "lockwind/player_input.h"
-#include "lockwind/result.h"
-#include "lockwind/world.h"
-
 namespace lockwind {
 
-/// Decides a bot's input from the last confirmed state. Its decisions travel as inputs, so that a log
-/// replays without it.
+/// Decides a bot's input from the last confirmed state. Its decisions travel as inputs, so that a
+/// log replays without it.
 class Behaviour {
 public:
     virtual ~Behaviour() = default;

@@ -1,5 +1,6 @@
 #include "bot/bot.h"
 
+#include "bot/log_behaviour.h"
 #include "codec/codec.h"
 #include "forensics/desync_report.h"
 #include "scene/scene.h"
@@ -17,6 +18,8 @@ namespace {
 
 /// Reported states that the server may still ask for.
 constexpr std::size_t kHistoryCapacity = 256;
+
+constexpr std::string_view kLogPrefix = "log:";
 
 /// How often a bot that is not yet matched looks again.
 constexpr std::uint64_t kConnectPollUs = 20'000;
@@ -69,7 +72,9 @@ Result<Corruption> parse_corruption(std::string_view text) {
 
 Result<std::unique_ptr<Bot>> Bot::create(const BotSettings& settings, Transport& transport) {
     Result<std::unique_ptr<Behaviour>> behaviour =
-        make_behaviour(settings.behaviour, settings.seed);
+        settings.behaviour.starts_with(kLogPrefix)
+            ? make_log_behaviour(settings.behaviour.substr(kLogPrefix.size()))
+            : make_behaviour(settings.behaviour, settings.seed);
     if (!behaviour) {
         return behaviour.error();
     }

@@ -29,8 +29,8 @@ struct Corruption {
 Result<Corruption> parse_corruption(std::string_view text);
 
 struct BotSettings {
-    std::uint64_t token = 1; // names the player: the same token gets its slot back; never 0
-    std::string behaviour = "fight";
+    std::uint64_t token = 1;         // names the player: the same token gets its slot back; never 0
+    std::string behaviour = "fight"; // or log:FILE, see log_behaviour.h
     std::uint64_t seed = 1;
     std::optional<Corruption> corruption;
     std::string corrupt_phase; // corrupts the state after every run of this phase; "" for none

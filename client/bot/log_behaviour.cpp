@@ -1,0 +1,44 @@
+#include "bot/log_behaviour.h"
+
+#include "log/log_reader.h"
+
+#include <utility>
+#include <vector>
+
+namespace lockwind {
+
+namespace {
+
+class LogBehaviour final : public Behaviour {
+public:
+    explicit LogBehaviour(std::vector<TickRecord> ticks) : ticks_(std::move(ticks)) {}
+
+    PlayerInput decide(const World&, Slot slot, Tick tick) override {
+        // A log's ticks are consecutive from 1.
+        if (tick == 0 || tick > ticks_.size() || slot >= ticks_[tick - 1].inputs.size()) {
+            return {};
+        }
+        return decode_player_input(ticks_[tick - 1].inputs[slot]);
+    }
+
+private:
+    std::vector<TickRecord> ticks_;
+};
+
+} // namespace
+
+Result<std::unique_ptr<Behaviour>> make_log_behaviour(const std::string& path) {
+    Result<LogReader> log = LogReader::open(path);
+    if (!log) {
+        return log.error();
+    }
+    std::vector<TickRecord> ticks;
+    while (std::optional<LogRecord> record = log.value().next()) {
+        if (auto* tick = std::get_if<TickRecord>(&*record)) {
+            ticks.push_back(std::move(*tick));
+        }
+    }
+    return std::unique_ptr<Behaviour>(std::make_unique<LogBehaviour>(std::move(ticks)));
+}
+
+} // namespace lockwind
