@@ -1,0 +1,198 @@
+#include "forensics/diff.h"
+#include "forensics/replay.h"
+#include "tests/support/match_harness.h"
+
+namespace lockwind {
+namespace {
+
+using testing::SimulatedMatch;
+using testing::TemporaryFolder;
+
+ReplayResult verify(const std::string& path) {
+    Result<LogReader> log = LogReader::open(path);
+    EXPECT_TRUE(log.ok()) << log.error().message;
+    const MatchConfig& config = log.value().header().config;
+    const Result<WorldDefinition> definition = parse_scene(
+        config.scene_text, config.scene_name, {config.players, config.seed, config.tick_rate_hz});
+    std::unique_ptr<WorldSimulation> simulation =
+        WorldSimulation::create(definition.value()).value();
+    ReplayOptions options;
+    options.verify = true;
+    return replay(log.value(), *simulation, options).value();
+}
+
+TEST(Match, AllPartiesAndTheReplayReachTheSameState) {
+    TemporaryFolder folder;
+    SimulatedMatch match({.players = 3, .ticks = 300}, folder.file("match.log"));
+    match.add_fighters(3);
+    ASSERT_TRUE(match.run());
+
+    const LockstepServer& server = match.server().session();
+    EXPECT_EQ(server.end_reason(), EndReason::complete) << server.end_message();
+    EXPECT_EQ(server.state_hash_tick(), 300U);
+    for (std::size_t index = 0; index < 3; ++index) {
+        EXPECT_EQ(match.bot(index).session().state_hash_tick(), 300U);
+        EXPECT_EQ(match.bot(index).session().state_hash(), server.state_hash());
+    }
+    const ReplayResult replayed = verify(folder.file("match.log"));
+    EXPECT_FALSE(replayed.first_bad_tick.has_value());
+    EXPECT_GE(replayed.hashes_checked, 300U);
+    EXPECT_EQ(replayed.state_hash, server.state_hash());
+    EXPECT_EQ(replayed.ended, LogEnd::summary);
+
+    EXPECT_GE(server.counters().hashes_agreed, 3 * 300U);
+    EXPECT_GT(match.server().figures().contacts.max(), 0U);
+    EXPECT_GT(match.server().figures().created, 0U) << "nobody shot";
+    EXPECT_GT(match.server().figures().destroyed, 0U);
+}
+
+TEST(Match, AnotherSeedGivesAnotherState) {
+    TemporaryFolder folder;
+    std::vector<std::uint64_t> hashes;
+    for (const std::uint64_t seed : {1U, 2U}) {
+        SimulatedMatch match({.ticks = 60, .seed = seed},
+                             folder.file(std::to_string(seed) + ".log"));
+        match.add_fighters(2);
+        ASSERT_TRUE(match.run());
+        hashes.push_back(match.server().session().state_hash());
+    }
+    EXPECT_NE(hashes[0], hashes[1]);
+}
+
+TEST(Match, HoldsUnderLossJitterReorderingAndDuplication) {
+    TemporaryFolder folder;
+    LinkConditions link;
+    link.latency_us = 40'000;
+    link.jitter_us = 20'000;
+    link.loss_ppm = 50'000;
+    link.duplicate_ppm = 20'000;
+    link.reorder_ppm = 20'000;
+    SimulatedMatch match({.players = 4, .ticks = 300, .link = link}, folder.file("match.log"));
+    match.add_fighters(4);
+    ASSERT_TRUE(match.run());
+    EXPECT_EQ(match.server().session().end_reason(), EndReason::complete);
+    EXPECT_EQ(match.server().session().counters().desyncs, 0U);
+    EXPECT_EQ(match.server().session().confirmed_tick(), 300U);
+    EXPECT_FALSE(verify(folder.file("match.log")).first_bad_tick.has_value());
+}
+
+TEST(Match, WritesEveryTickBeforeAnybodyHearsOfIt) {
+    TemporaryFolder folder;
+    const std::string path = folder.file("match.log");
+    SimulatedMatch match({.ticks = 90}, path);
+    match.add_fighters(2);
+    Tick heard = 0;
+    std::uint64_t looks = 0;
+    ASSERT_TRUE(match.run_until([&] {
+        const Tick newest = std::max(match.bot(0).session().confirmed_tick(),
+                                     match.bot(1).session().confirmed_tick());
+        if (newest > heard) {
+            heard = newest;
+            ++looks;
+            Result<LogReader> log = LogReader::open(path);
+            Tick written = 0;
+            while (std::optional<LogRecord> record = log.value().next()) {
+                if (const auto* tick = std::get_if<TickRecord>(&*record)) {
+                    written = tick->tick;
+                }
+            }
+            EXPECT_GE(written, heard);
+        }
+        return false;
+    }));
+    EXPECT_EQ(heard, 90U);
+    EXPECT_GT(looks, 45U);
+}
+
+TEST(Match, AKilledBotComesBackIntoItsSlotAndReachesTheSameState) {
+    TemporaryFolder folder;
+    SimulatedMatch match({.players = 2, .ticks = 900}, folder.file("match.log"));
+    match.add_fighters(2);
+    const LockstepServer& server = match.server().session();
+    ASSERT_TRUE(match.run_until([&] { return server.confirmed_tick() >= 100; }));
+    const Slot slot = match.bot(1).session().slot();
+    match.kill_bot(1);
+    ASSERT_TRUE(match.run_until([&] { return server.counters().drops == 1; }));
+
+    BotSettings again;
+    again.token = again.seed = 2;
+    const std::size_t back = match.add_bot(again);
+    ASSERT_TRUE(match.run());
+    EXPECT_EQ(server.counters().reconnects, 1U);
+    EXPECT_EQ(match.bot(back).session().slot(), slot);
+    EXPECT_EQ(match.bot(back).session().state_hash_tick(), 900U);
+    EXPECT_EQ(match.bot(back).session().state_hash(), server.state_hash());
+    EXPECT_EQ(server.counters().desyncs, 0U);
+    EXPECT_FALSE(verify(folder.file("match.log")).first_bad_tick.has_value());
+}
+
+DiffResult desync_of(SimulatedMatch& match) {
+    EXPECT_TRUE(match.run());
+    EXPECT_EQ(match.server().session().end_reason(), EndReason::desync);
+    EXPECT_EQ(match.server().desyncs().size(), 1U);
+    const DesyncOutcome& outcome = match.server().desyncs().front();
+    EXPECT_EQ(outcome.problem, "");
+    return diff_bundle(read_bundle(outcome.bundle).value()).value();
+}
+
+TEST(Match, CorruptedStateIsCaughtAtItsTickAndTracedToItsField) {
+    TemporaryFolder folder;
+    for (const std::uint32_t interval : {1U, 8U}) {
+        SimulatedMatch match({.ticks = 300, .hash_interval_ticks = interval},
+                             folder.file(std::to_string(interval) + ".log"));
+        match.add_fighters(1);
+        BotSettings corrupted;
+        corrupted.token = 2;
+        corrupted.corruption = Corruption{1, 104, "body.position.y"};
+        match.add_bot(corrupted);
+        const DiffResult diff = desync_of(match);
+        EXPECT_EQ(match.server().desyncs().front().desync.bad_tick, 104U);
+        EXPECT_EQ(match.server().desyncs().front().verdict, "corrupted_state");
+        EXPECT_EQ(diff.first_tick, 104U);
+        EXPECT_EQ(diff.phase, "outside_step");
+        EXPECT_EQ(diff.section, "body");
+        EXPECT_EQ(diff.fields.at(0).field, "position.y");
+    }
+}
+
+TEST(Match, AFaultInAPhaseIsTracedToThatPhase) {
+    TemporaryFolder folder;
+    for (const std::string_view phase : World::phases()) {
+        SimulatedMatch match({.ticks = 120}, folder.file(std::string(phase) + ".log"));
+        match.add_fighters(1);
+        BotSettings faulty;
+        faulty.token = 2;
+        faulty.corrupt_phase = phase;
+        match.add_bot(faulty);
+        const DiffResult diff = desync_of(match);
+        EXPECT_EQ(match.server().desyncs().front().verdict, "nondeterminism") << phase;
+        EXPECT_EQ(match.server().desyncs().front().desync.bad_tick, 1U) << phase;
+        EXPECT_EQ(diff.first_tick, 1U);
+        EXPECT_EQ(diff.phase, phase);
+        EXPECT_EQ(diff.section, "body");
+        EXPECT_EQ(diff.fields.at(0).field, "linear_velocity.x");
+    }
+}
+
+TEST(Match, RefusesAnExistingLogAndAWrongConfiguration) {
+    TemporaryFolder folder;
+    SimulatedMatch match({.ticks = 1}, folder.file("match.log"));
+    VirtualClock clock;
+    SimulatedNetwork network(clock, 1);
+    const std::unique_ptr<Transport> transport = network.open(kServerPeer);
+    MatchSettings settings;
+    settings.config = match.server().session().config();
+    settings.log_path = folder.file("match.log");
+    const Result<std::unique_ptr<MatchServer>> twice = MatchServer::create(settings, *transport);
+    ASSERT_FALSE(twice.ok());
+    EXPECT_NE(twice.error().message.find("match.log"), std::string::npos);
+
+    settings.config.players = 1000;
+    EXPECT_FALSE(MatchServer::check_settings(settings.config).ok());
+    settings.config.players = 2;
+    settings.config.tick_rate_hz = 0;
+    EXPECT_FALSE(MatchServer::check_settings(settings.config).ok());
+}
+
+} // namespace
+} // namespace lockwind
