@@ -70,7 +70,9 @@ void BodyReader::read_body(int index) {
 void BodyReader::read_pods(std::uint32_t players) {
     if (!scene_.has_pods()) {
         if (players > 0 && players != kEverySeat) {
-            reader_.fail("name", "\"" + scene_.name() + "\" seats no player: add `pods`");
+            reader_.fail("",
+                         "the scene seats no player: it has no `pods`, but " +
+                             std::to_string(players) + " are to be seated");
         }
         return;
     }
@@ -248,9 +250,13 @@ void BodyReader::check_mass(const FieldReader& reader, const BodyDefinition& def
     }
     const double mass = to_double(mass_of(shape.type, size.data(), definition.density));
     if (mass < kMass.min || mass > kMass.max) {
-        reader.fail(reader.has("density") ? "density" : "",
-                    "makes the body weigh " + std::to_string(mass) +
-                        " kg; a dynamic body weighs 0.001 .. 1000000 kg");
+        const std::string kilograms = text_of(mass) + " kg";
+        const std::string limits = "; a dynamic body weighs 0.001 .. 1000000 kg";
+        if (reader.has("density")) {
+            reader.fail("density", "makes the body weigh " + kilograms + limits);
+        } else {
+            reader.fail("", "weighs " + kilograms + " by its density" + limits);
+        }
     }
 }
 

@@ -1,10 +1,11 @@
 #include "scene/scene.h"
 
+#include <array>
 #include <cerrno>
 #include <charconv>
+#include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <memory>
 
 namespace lockwind {
 namespace {
@@ -52,23 +53,25 @@ std::string built_in_names() {
 }
 
 Result<std::string> read_file(const std::string& path) {
-    errno = 0;
-    std::ifstream file(path, std::ios::binary);
-    if (!file) {
-        const std::string reason = errno != 0 ? std::strerror(errno) : "cannot be opened";
-        return Error{path + ": " + reason + "; name a file or one of: " + built_in_names()};
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
+                                                               &std::fclose);
+    if (file == nullptr) {
+        return Error{path + ": " + std::strerror(errno) +
+                     "; name a file or one of: " + built_in_names()};
     }
     std::string text;
-    text.reserve(4096);
-    for (std::istreambuf_iterator<char> it(file), end; it != end; ++it) {
-        if (text.size() == kSceneTextSizeBytesMax) {
+    std::array<char, 4096> block{};
+    std::size_t size = block.size();
+    while (size == block.size()) {
+        size = std::fread(block.data(), 1, block.size(), file.get());
+        text.append(block.data(), size);
+        if (text.size() > kSceneTextSizeBytesMax) {
             return Error{path + ": longer than " + std::to_string(kSceneTextSizeBytesMax) +
                          " bytes; use arrangements instead of single bodies"};
         }
-        text.push_back(*it);
     }
-    if (file.bad()) {
-        return Error{path + ": cannot be read"};
+    if (std::ferror(file.get()) != 0) {
+        return Error{path + ": " + std::strerror(errno)};
     }
     return text;
 }

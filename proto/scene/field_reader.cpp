@@ -12,17 +12,17 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::TextFormat;
 
-std::string text_of(double value) {
-    char buffer[40];
-    std::snprintf(buffer, sizeof buffer, "%.10g", value);
-    return buffer;
-}
-
 std::string with_unit(const std::string& number, std::string_view unit) {
     return unit.empty() ? number : number + " " + std::string(unit);
 }
 
 } // namespace
+
+std::string text_of(double value) {
+    char buffer[40];
+    std::snprintf(buffer, sizeof buffer, "%.7g", value);
+    return buffer;
+}
 
 void SceneErrors::add(int line, int column, std::string_view what) {
     if (any()) {

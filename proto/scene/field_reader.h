@@ -24,6 +24,9 @@ private:
     std::string message_;
 };
 
+/// The number as a message shows it, to 7 digits.
+std::string text_of(double value);
+
 /// What a number may be; both ends belong to it.
 struct Range {
     double min;

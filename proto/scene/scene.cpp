@@ -4,51 +4,14 @@
 #include "scene/body_reader.h"
 #include "scene/field_reader.h"
 #include "scene/settings_reader.h"
+#include "scene/text_parser.h"
 
 #include "lockwind/world.h"
 
-#include <google/protobuf/io/tokenizer.h>
-#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
 #include <google/protobuf/text_format.h>
 
 namespace lockwind {
 namespace {
-
-using google::protobuf::TextFormat;
-
-/// Hands the text parser's complaints to SceneErrors.
-class ParserErrors : public google::protobuf::io::ErrorCollector {
-public:
-    explicit ParserErrors(SceneErrors& errors) : errors_(errors) {}
-    void AddError(int line,
-                  google::protobuf::io::ColumnNumber column,
-                  const std::string& what) override {
-        errors_.add(line, column, what);
-    }
-
-private:
-    SceneErrors& errors_;
-};
-
-bool parse_text(std::string_view text,
-                scene_text::Scene& scene,
-                TextFormat::ParseInfoTree& tree,
-                SceneErrors& errors) {
-    if (text.size() > kSceneTextSizeBytesMax) {
-        errors.add(-1,
-                   -1,
-                   "the text is longer than " + std::to_string(kSceneTextSizeBytesMax) +
-                       " bytes; use arrangements instead of single bodies");
-        return false;
-    }
-    ParserErrors parser_errors(errors);
-    TextFormat::Parser parser;
-    parser.RecordErrorsTo(&parser_errors);
-    parser.WriteLocationsTo(&tree);
-    parser.SetRecursionLimit(16);
-    google::protobuf::io::ArrayInputStream input(text.data(), static_cast<int>(text.size()));
-    return parser.Parse(&input, &scene) && !errors.any();
-}
 
 void read_name(const scene_text::Scene& scene, const FieldReader& reader, WorldDefinition& world) {
     constexpr std::size_t kNameSizeMax = 64;
@@ -69,8 +32,8 @@ Result<SceneContent>
 read_scene(std::string_view text, std::string_view file_name, const SceneOptions& options) {
     SceneErrors errors(file_name);
     scene_text::Scene scene;
-    TextFormat::ParseInfoTree tree;
-    if (!parse_text(text, scene, tree, errors)) {
+    google::protobuf::TextFormat::ParseInfoTree tree;
+    if (!parse_scene_text(text, scene, tree, errors)) {
         return Error{errors.message()};
     }
     const FieldReader reader(scene, tree, errors);
