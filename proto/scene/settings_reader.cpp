@@ -4,7 +4,7 @@ namespace lockwind {
 namespace {
 
 constexpr Range kTickRate{10, 240, "Hz"};
-constexpr Range kCapacity{1, 4'000'000, ""};
+constexpr Range kCapacity{1, 1'000'000, ""};
 
 } // namespace
 
@@ -18,7 +18,7 @@ WorldSettings read_settings(const FieldReader& scene, const SceneOptions& option
         reader.real("linear_speed_max", settings.linear_speed_max, {1, 1000, "m/s"});
     settings.angular_speed_max =
         reader.real("angular_speed_max", settings.angular_speed_max, {1, 200, "rad/s"});
-    settings.bounds = reader.real("bounds", settings.bounds, {1, 30'000, "m"});
+    settings.bounds = reader.real("bounds", settings.bounds, {1, 16'000, "m"});
     settings.body_capacity = reader.count("body_capacity", 0, kCapacity);
     settings.pair_capacity = reader.count("pair_capacity", 0, kCapacity);
     settings.manifold_capacity = reader.count("manifold_capacity", 0, kCapacity);

@@ -189,7 +189,7 @@ TEST(SceneErrors, NameFieldAndPlaceInSettings) {
     EXPECT_EQ(error_of("name: \"t\"\nsettings { gravity { y: -5000 } }"),
               "t.textproto:2:22: settings.gravity.y is -5000 m/s^2; give -100 .. 100 m/s^2");
     EXPECT_EQ(error_of("name: \"t\"\nsettings { bounds: 0 }"),
-              "t.textproto:2:12: settings.bounds is 0 m; give 1 .. 30000 m");
+              "t.textproto:2:12: settings.bounds is 0 m; give 1 .. 16000 m");
 }
 
 TEST(SceneErrors, RefuseBodiesThatCannotBe) {
