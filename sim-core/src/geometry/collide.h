@@ -21,7 +21,7 @@ inline void centre_delta(const std::int64_t position_a[3],
 /// The same for a pair of which one is a plane, whose origin may be 60 km away: a plane looks the
 /// same from all its points, so its centre is taken to be the foot of the other's centre on it. The
 /// vector is then +-height x normal, and stays so while the other slides along. Heights are clamped
-/// to +-511 m.
+/// to +-400 m.
 void centre_delta_plane(const ShapeInstance& a,
                         const std::int64_t position_a[3],
                         const ShapeInstance& b,

@@ -1,11 +1,15 @@
 #pragma once
 
+#include "lockwind/integer.h"
+#include "lockwind/overflow.h"
+
+#include <bit>
 #include <cstdint>
 
 namespace lockwind {
 
 // Kernels of this layer work on raw int32 lengths (Q9.22 m) and unit vectors (Q2.30) with int64
-// sums of products and one rounding: to the nearest, halves up, as every kernel of the solver does.
+// sums of products and one rounding: half up, as everywhere.
 
 inline constexpr int kLengthFraction = 22;
 inline constexpr int kUnitFraction = 30;
@@ -15,6 +19,8 @@ inline constexpr std::int32_t kUnitOne = 1 << kUnitFraction;
 inline constexpr std::int32_t kLinearSlop = 20972;
 /// 20 mm, Q9.22: surfaces this close already are a contact.
 inline constexpr std::int32_t kSpeculativeMargin = 83886;
+/// 61 um, Q9.22: a shorter vector of rounded lengths gives no direction.
+inline constexpr std::int32_t kDirectionMin = 256;
 
 constexpr std::int32_t magnitude(std::int32_t value) {
     return value < 0 ? -value : value;
@@ -24,6 +30,11 @@ constexpr std::int64_t magnitude(std::int64_t value) {
     return value < 0 ? -value : value;
 }
 
+template <class T>
+constexpr T clamped(T value, T low, T high) {
+    return value < low ? low : (value > high ? high : value);
+}
+
 /// A sum of products with unit vectors, |sum| < 2^63 - 2^29, back in its other factor's format.
 constexpr std::int64_t round_unit_wide(std::int64_t sum) {
     return (sum + (std::int64_t{1} << (kUnitFraction - 1))) >> kUnitFraction;
@@ -31,13 +42,52 @@ constexpr std::int64_t round_unit_wide(std::int64_t sum) {
 
 /// The same where the result is known to fit 32 bits.
 constexpr std::int32_t round_unit(std::int64_t sum) {
-    return static_cast<std::int32_t>(round_unit_wide(sum));
+    return raw_narrow<std::int32_t>(round_unit_wide(sum));
+}
+
+/// length x unit.
+constexpr std::int32_t scale(std::int32_t length, std::int32_t unit) {
+    return round_unit(static_cast<std::int64_t>(length) * unit);
 }
 
 /// Exact sum of products of two 3-vectors; |a| |b| < 2^63.
 constexpr std::int64_t dot_wide(const std::int32_t a[3], const std::int32_t b[3]) {
     return static_cast<std::int64_t>(a[0]) * b[0] + static_cast<std::int64_t>(a[1]) * b[1] +
            static_cast<std::int64_t>(a[2]) * b[2];
+}
+
+/// Exact squared length; needs no bound: 3 * 2^62 < 2^64.
+constexpr std::uint64_t squared_length(const std::int32_t v[3]) {
+    std::uint64_t sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        sum += static_cast<std::uint64_t>(static_cast<std::int64_t>(v[axis]) * v[axis]);
+    }
+    return sum;
+}
+
+/// Length of v rounded down, and its unit vector (each component within 2 ulp); 0 leaves `unit`
+/// alone. The vector is first scaled to 30 bits, so that short ones lose no digits.
+inline std::int32_t normalise(const std::int32_t v[3], std::int32_t unit[3]) {
+    const auto bits =
+        static_cast<std::uint32_t>(magnitude(v[0]) | magnitude(v[1]) | magnitude(v[2]));
+    if (bits == 0) {
+        return 0;
+    }
+    const int shift = std::countl_zero(bits) - 2;
+    std::int64_t scaled[3];
+    std::uint64_t square = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::int64_t value = v[axis];
+        scaled[axis] = shift < 0 ? value >> 1 : value * (std::int64_t{1} << shift);
+        square += static_cast<std::uint64_t>(scaled[axis] * scaled[axis]);
+    }
+    const std::uint64_t root = floor_sqrt(square);
+    const std::uint64_t nearest = root + (square - root * root > root ? 1U : 0U);
+    const auto reciprocal = static_cast<std::int64_t>((std::uint64_t{1} << 62U) / nearest);
+    for (int axis = 0; axis < 3; ++axis) {
+        unit[axis] = static_cast<std::int32_t>(round_shift(scaled[axis] * reciprocal, 32));
+    }
+    return static_cast<std::int32_t>(shift < 0 ? root << 1U : root >> shift);
 }
 
 } // namespace lockwind

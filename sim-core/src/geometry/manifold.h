@@ -16,10 +16,10 @@ struct ManifoldPoint {
 
 /// Contact of a pair A, B as collide() finds it.
 struct ManifoldGeometry {
-    std::int32_t normal[3]; // Q2.30, world, from A to B
+    std::int32_t normal[3];    // Q2.30, world, from A to B
     std::uint32_t point_count; // 0: separated by more than the speculative margin
     ManifoldPoint points[kManifoldPointsMax];
-    std::uint32_t axis;     // box-box: separating or reference axis, 1 .. 15; 0 for none; for the cache
+    std::uint32_t axis; // box-box: separating or reference axis, 1 .. 15; 0 for none; for the cache
     std::int32_t axis_separation; // Q9.22 m: separation of the reference face when it was chosen
 };
 

@@ -1,0 +1,58 @@
+#include "geometry/bounds.h"
+
+#include "geometry/fixed_geometry.h"
+
+#include "lockwind/assert.h"
+#include "lockwind/integer.h"
+
+namespace lockwind {
+
+namespace {
+
+/// Rounding of the matrix's entries moves a corner 433 m away by 2 ulp at most.
+constexpr std::int32_t kMatrixError = 2;
+
+std::int32_t round_up(std::int64_t sum) {
+    return raw_narrow<std::int32_t>((sum + kUnitOne - 1) >> kUnitFraction) + kMatrixError;
+}
+
+} // namespace
+
+void bounds_half_extents(const ShapeInstance& shape, std::int32_t half_extents[3]) {
+    LOCKWIND_ASSERT(is_bounded(shape.type));
+    const std::int32_t* size = shape.size;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (shape.type == ShapeType::sphere) {
+            half_extents[axis] = size[0];
+            continue;
+        }
+        const std::int32_t* row = shape.rotation + 3 * axis;
+        if (shape.type == ShapeType::capsule) {
+            half_extents[axis] =
+                size[0] + round_up(static_cast<std::int64_t>(magnitude(row[1])) * size[1]);
+        } else {
+            half_extents[axis] = round_up(static_cast<std::int64_t>(magnitude(row[0])) * size[0] +
+                                          static_cast<std::int64_t>(magnitude(row[1])) * size[1] +
+                                          static_cast<std::int64_t>(magnitude(row[2])) * size[2]);
+        }
+    }
+}
+
+std::int32_t bounding_radius(ShapeType type, const std::int32_t size[3]) {
+    switch (type) {
+    case ShapeType::sphere:
+        return size[0];
+    case ShapeType::capsule:
+        return size[0] + size[1];
+    case ShapeType::box: {
+        const std::uint64_t square = squared_length(size);
+        const std::uint64_t root = floor_sqrt(square);
+        return static_cast<std::int32_t>(root + (root * root < square ? 1U : 0U));
+    }
+    case ShapeType::plane:
+        return 0;
+    }
+    return 0;
+}
+
+} // namespace lockwind

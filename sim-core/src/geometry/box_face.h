@@ -1,0 +1,39 @@
+#pragma once
+
+#include "geometry/manifold.h"
+
+#include <cstdint>
+
+namespace lockwind {
+
+/// One box seen from another's frame (the reference box, whose face may carry the contact).
+struct IncidentBox {
+    const std::int32_t* reference_half_extents; // Q9.22 m
+    const std::int32_t* half_extents;
+    std::int32_t axes[9];   // columns: the incident box's axes, Q2.30
+    std::int32_t centre[3]; // Q9.22
+};
+
+/// A corner of the incident face's part above the reference face. Its feature is the pair of edges
+/// that meet in it: 0 .. 3 edges of the incident face, 4 .. 7 sides of the reference face.
+struct FacePoint {
+    std::int64_t place[2];   // along the reference face's axes u = axis + 1, v = axis + 2; Q9.22
+    std::int64_t separation; // above the reference face
+    std::uint8_t edge_in;
+    std::uint8_t edge_out;
+};
+
+struct FaceContact {
+    FacePoint points[kManifoldPointsMax];
+    int count = 0;
+    bool positive = true;            // which of the axis' two faces
+    std::uint32_t feature = 0;       // reference and incident face, 6 bits
+    std::int32_t min_separation = 0; // of all corners before the reduction to four
+};
+
+/// Clips the incident face against the sides of the reference box's face on `axis`. Leaves count 0
+/// where nothing of it is within kSpeculativeMargin. Points of that face that are farther come
+/// along, so that a recycled manifold still holds when the box rocks.
+void clip_to_reference_face(const IncidentBox& box, int axis, FaceContact& out);
+
+} // namespace lockwind

@@ -1,0 +1,80 @@
+#pragma once
+
+#include "geometry/collide.h"
+#include "geometry/fixed_geometry.h"
+#include "geometry/rotation.h"
+
+namespace lockwind {
+
+// One kernel per pair of types; the first shape is the one whose type comes later in ShapeType.
+// Each finds `out` with point_count 0 and axis 0. |delta| < 512 m.
+
+void collide_spheres(const ShapeInstance& a,
+                     const ShapeInstance& b,
+                     const std::int32_t delta[3],
+                     ManifoldGeometry& out);
+void collide_capsule_sphere(const ShapeInstance& capsule,
+                            const ShapeInstance& sphere,
+                            const std::int32_t delta[3],
+                            ManifoldGeometry& out);
+void collide_box_sphere(const ShapeInstance& box,
+                        const ShapeInstance& sphere,
+                        const std::int32_t delta[3],
+                        ManifoldGeometry& out);
+void collide_capsules(const ShapeInstance& a,
+                      const ShapeInstance& b,
+                      const std::int32_t delta[3],
+                      ManifoldGeometry& out);
+void collide_box_capsule(const ShapeInstance& box,
+                         const ShapeInstance& capsule,
+                         const std::int32_t delta[3],
+                         ManifoldGeometry& out);
+void collide_boxes(const ShapeInstance& a,
+                   const ShapeInstance& b,
+                   const std::int32_t delta[3],
+                   const ManifoldCache& cache,
+                   ManifoldGeometry& out);
+void collide_plane_sphere(const ShapeInstance& plane,
+                          const ShapeInstance& sphere,
+                          const std::int32_t delta[3],
+                          ManifoldGeometry& out);
+void collide_plane_capsule(const ShapeInstance& plane,
+                           const ShapeInstance& capsule,
+                           const std::int32_t delta[3],
+                           ManifoldGeometry& out);
+void collide_plane_box(const ShapeInstance& plane,
+                       const ShapeInstance& box,
+                       const std::int32_t delta[3],
+                       ManifoldGeometry& out);
+
+/// World direction of the body's axis `column`.
+inline void axis_of(const ShapeInstance& shape, int column, std::int32_t axis[3]) {
+    for (int row = 0; row < 3; ++row) {
+        axis[row] = shape.rotation[3 * row + column];
+    }
+}
+
+/// A world vector in the shape's frame; a sphere's frame never turns.
+inline void to_local(const ShapeInstance& shape, const std::int32_t v[3], std::int32_t local[3]) {
+    if (shape.type == ShapeType::sphere) {
+        for (int axis = 0; axis < 3; ++axis) {
+            local[axis] = v[axis];
+        }
+    } else {
+        inverse_rotate(shape.rotation, v, local);
+    }
+}
+
+/// Places a point: `middle` is the mid-surface point relative to A's centre, world axes.
+inline void place_point(const ShapeInstance& a,
+                        const ShapeInstance& b,
+                        const std::int32_t delta[3],
+                        const std::int32_t middle[3],
+                        ManifoldPoint& point) {
+    const std::int32_t from_b[3] = {
+        middle[0] - delta[0], middle[1] - delta[1], middle[2] - delta[2]};
+    to_local(a, middle, point.local_a);
+    to_local(b, from_b, point.local_b);
+}
+
+} // namespace lockwind
