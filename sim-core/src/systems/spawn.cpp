@@ -1,0 +1,107 @@
+#include "systems/spawn.h"
+
+#include <algorithm>
+
+namespace lockwind {
+
+BodyRow row_of(const Table<BodyMotion>& motion, BodyId id) {
+    const std::span<BodyMotion> rows = motion.rows();
+    const auto found =
+        std::lower_bound(rows.begin(), rows.end(), id, [](const BodyMotion& row, BodyId wanted) {
+            return row.id < wanted;
+        });
+    return found != rows.end() && found->id == id ? static_cast<BodyRow>(found - rows.begin())
+                                                  : kNoIndex;
+}
+
+Spawner::Spawner(std::uint32_t body_capacity, std::uint32_t create_capacity)
+    : destroyed_(body_capacity, 0) {
+    created_.reserve(create_capacity);
+    new_row_of_.reserve(body_capacity);
+}
+
+void Spawner::create(const BodyRecord& body) {
+    LOCKWIND_ASSERT(created_.size() < created_.capacity());
+    created_.push_back(body);
+}
+
+bool Spawner::destroy(BodyRow row) {
+    if (destroyed_[row] != 0) {
+        return false;
+    }
+    destroyed_[row] = 1;
+    ++destroyed_count_;
+    return true;
+}
+
+void Spawner::sort_created() {
+    std::sort(created_.begin(), created_.end(), [](const BodyRecord& a, const BodyRecord& b) {
+        return a.motion.id < b.motion.id;
+    });
+}
+
+void Spawner::number_rows(const Table<BodyMotion>& motion) {
+    new_row_of_.clear();
+    BodyRow next = 0;
+    std::size_t created = 0;
+    for (BodyRow row = 0; row < motion.count(); ++row) {
+        if (destroyed_[row] != 0) {
+            new_row_of_.push_back(kNoIndex);
+            continue;
+        }
+        while (created < created_.size() && created_[created].motion.id < motion[row].id) {
+            ++created;
+            ++next;
+        }
+        new_row_of_.push_back(next);
+        ++next;
+    }
+}
+
+StepFault Spawner::apply(const DynamicsTables& tables) {
+    if (created_.empty() && destroyed_count_ == 0) {
+        return StepFault::none;
+    }
+    sort_created();
+    const std::uint32_t old_count = tables.motion.count();
+    const std::uint32_t kept = old_count - destroyed_count_;
+    const auto count = static_cast<std::uint32_t>(kept + created_.size());
+    const bool fits = count <= tables.motion.capacity();
+    if (fits) {
+        number_rows(tables.motion);
+        remap_rows(tables, new_row_of_);
+        BodyRow packed = 0;
+        for (BodyRow row = 0; row < old_count; ++row) {
+            if (destroyed_[row] == 0) {
+                tables.motion[packed] = tables.motion[row];
+                tables.properties[packed] = tables.properties[row];
+                ++packed;
+            }
+        }
+        tables.motion.set_count(kept);
+        tables.properties.set_count(kept);
+        tables.motion.set_count(count);
+        tables.properties.set_count(count);
+        // From the back, so that a row moves up before its place is taken.
+        BodyRow target = count;
+        BodyRow old = kept;
+        for (std::size_t created = created_.size(); created > 0; --created) {
+            const BodyRecord& body = created_[created - 1];
+            while (old > 0 && tables.motion[old - 1].id > body.motion.id) {
+                --target;
+                --old;
+                tables.motion[target] = tables.motion[old];
+                tables.properties[target] = tables.properties[old];
+            }
+            --target;
+            tables.motion[target] = body.motion;
+            tables.properties[target] = body.properties;
+        }
+    }
+    created_.clear();
+    std::fill_n(destroyed_.begin(), old_count, std::uint8_t{0});
+    destroyed_count_ = 0;
+    return fits ? StepFault::none : StepFault::bodies_full;
+}
+
+} // namespace lockwind

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "dynamics/dynamics.h"
+
+#include "lockwind/types.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lockwind {
+
+/// Both rows of a body.
+struct BodyRecord {
+    BodyMotion motion;
+    BodyProperties properties;
+};
+
+/// Row of the body of that id, by binary search; kNoIndex where there is none.
+BodyRow row_of(const Table<BodyMotion>& motion, BodyId id);
+
+/// A body that `spawner` made has its id in the high half of its own.
+constexpr BodyId spawner_of(BodyId id) {
+    return id >> 32U;
+}
+constexpr BodyId spawned_id(BodyId spawner, std::uint32_t spawn_count) {
+    return (spawner << 32U) | spawn_count;
+}
+
+/// Collects bodies to make and to destroy, then merges them into the id-sorted tables at once.
+/// Empty between ticks: no state. Allocates on construction only.
+class Spawner {
+public:
+    /// At most `create_capacity` creations a merge.
+    Spawner(std::uint32_t body_capacity, std::uint32_t create_capacity);
+
+    void create(const BodyRecord& body);
+    /// False where the row is already to be destroyed.
+    bool destroy(BodyRow row);
+    bool is_destroyed(BodyRow row) const { return destroyed_[row] != 0; }
+
+    /// Queued bodies; after sort_created() in id order.
+    std::span<const BodyRecord> created() const { return created_; }
+    void sort_created();
+
+    /// Makes tables of the bodies that stay and the new ones, in id order, and renumbers pairs and
+    /// manifolds. Empties the queues. bodies_full leaves the tables as they were.
+    StepFault apply(const DynamicsTables& tables);
+
+private:
+    void number_rows(const Table<BodyMotion>& motion);
+
+    std::vector<BodyRecord> created_;
+    std::vector<std::uint8_t> destroyed_; // by row
+    std::uint32_t destroyed_count_ = 0;
+    std::vector<BodyRow> new_row_of_; // by row before the merge
+};
+
+} // namespace lockwind
