@@ -38,12 +38,15 @@ struct RayHit {
     Vec3 normal;   // unit, out of the body
 };
 
-/// Counts of one tick, for progress, metrics and the vacuity checks of tests.
+/// Counts of a state, for progress, metrics and the vacuity checks of tests.
 struct WorldCounts {
     std::uint32_t bodies;
     std::uint32_t pairs;    // overlapping fat bounds
     std::uint32_t contacts; // contact points in touching manifolds
     std::uint32_t manifolds;
+    std::uint64_t events_total;    // since state(0)
+    std::uint64_t created_total;   // bodies created in ticks since state(0)
+    std::uint64_t destroyed_total; // bodies destroyed in ticks since state(0)
 };
 
 class World;
@@ -64,8 +67,11 @@ public:
     Status step(std::span<const SlotInput> inputs, PhaseObserver* observer = nullptr);
     static std::span<const std::string_view> phases();
 
-    /// Events of the last step, in order.
+    /// Events of the last step, in order; none after a load. A body that is destroyed ends its
+    /// contacts without a contact_end.
     std::span<const Event> events() const;
+    /// Chain of XXH3-64 over all events since state(0); part of the state.
+    std::uint64_t event_hash() const;
     WorldCounts counts() const;
     std::uint32_t body_count() const;
     BodyView body_at(BodyRow row) const; // id order
@@ -75,28 +81,34 @@ public:
     std::uint32_t score(Slot slot) const;
 
     /// Between steps, all immediate; SI units, world frame. False where there is no such dynamic
-    /// body.
+    /// body. None of these makes events.
     bool apply_impulse(BodyId id, const Vec3& impulse, const Vec3& point); // N s, at point
     bool apply_force(BodyId id, const Vec3& force, const Vec3& point);     // N over the next tick
     bool apply_torque(BodyId id, const Vec3& torque);                      // N m over the next tick
+    /// An id that was ever used must not come back: only living bodies and pods are checked.
     Status create_body(const BodyDefinition& definition);
     bool destroy_body(BodyId id);
 
     /// First hit on the segment from + t * (to - from); ties go to the lower id.
     std::optional<RayHit> ray_cast(const Vec3& from, const Vec3& to) const;
 
+    /// See Simulation.
     std::uint64_t state_hash() const;
     HashTree hash_tree() const;
     void save(std::vector<std::byte>& out) const;
     Status load(std::span<const std::byte> bytes);
     static StateSchema schema();
     std::uint32_t row_count(std::uint32_t section) const;
-    /// Test tools: live bytes of a section, native order; dropping caches.
+
+    /// Test tools: live bytes of a section in this machine's order; whether load() would take the
+    /// state as it is; dropping caches.
     std::span<std::byte> section_bytes(std::uint32_t section);
+    Status check() const;
     void drop_derived();
 
+    struct Impl; // of layer world
+
 private:
-    struct Impl;
     explicit World(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;
 };

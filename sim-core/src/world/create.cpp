@@ -1,0 +1,111 @@
+#include "dynamics/make_body.h"
+#include "systems/motion.h"
+#include "systems/pod.h"
+#include "world/definition.h"
+#include "world/impl.h"
+
+#include <algorithm>
+#include <array>
+
+namespace lockwind {
+
+namespace {
+
+/// One creation by the API, or for each pod a ball and the pod's own return.
+std::uint32_t creations_max(std::size_t pods) {
+    return static_cast<std::uint32_t>(std::max<std::size_t>(1, 2 * pods));
+}
+
+/// A pair changes once and hits once a tick; a body is created or destroyed once, and a ball
+/// scores once.
+std::size_t events_max(const DynamicsSettings& capacities) {
+    return std::size_t{3} * capacities.pair_capacity + std::size_t{3} * capacities.body_capacity;
+}
+
+std::array<std::uint32_t, section::kCount> capacities_of(const DynamicsSettings& capacities,
+                                                         std::size_t pods) {
+    std::array<std::uint32_t, section::kCount> rows{};
+    rows[section::kArena] = 1;
+    rows[section::kGlobals] = 1;
+    rows[section::kBody] = capacities.body_capacity;
+    rows[section::kBodyProperties] = capacities.body_capacity;
+    rows[section::kPair] = capacities.pair_capacity;
+    rows[section::kManifold] = capacities.manifold_capacity;
+    rows[section::kPlayer] = static_cast<std::uint32_t>(pods);
+    return rows;
+}
+
+Status make_bodies(const WorldDefinition& definition, const DynamicsTables& tables) {
+    std::vector<const BodyDefinition*> sorted;
+    for (const BodyDefinition& body : definition.bodies) {
+        sorted.push_back(&body);
+    }
+    std::sort(sorted.begin(), sorted.end(), [](const BodyDefinition* a, const BodyDefinition* b) {
+        return a->id < b->id;
+    });
+    tables.motion.set_count(static_cast<std::uint32_t>(sorted.size()));
+    tables.properties.set_count(static_cast<std::uint32_t>(sorted.size()));
+    for (BodyRow row = 0; row < sorted.size(); ++row) {
+        if (Status made = make_body(
+                *sorted[row], definition.settings, tables.motion[row], tables.properties[row]);
+            !made) {
+            return made;
+        }
+    }
+    return Success{};
+}
+
+} // namespace
+
+World::Impl::Impl(const WorldDefinition& definition,
+                  const DynamicsSettings& dynamics_capacities,
+                  PodSystem pod_system)
+    : settings(definition.settings), capacities(dynamics_capacities),
+      arena(kWorldSections, capacities_of(capacities, definition.pods.size())),
+      staging(kWorldSections, capacities_of(capacities, definition.pods.size())), hasher(arena),
+      dynamics(capacities), pods(std::move(pod_system)),
+      spawner(capacities.body_capacity, creations_max(definition.pods.size())),
+      events(events_max(capacities)), manifold_seen(capacities.manifold_capacity) {}
+
+DynamicsTables World::Impl::tables_of(StateArena& arena) {
+    return {arena.table<BodyMotion>(section::kBody),
+            arena.table<BodyProperties>(section::kBodyProperties),
+            arena.table<Pair>(section::kPair),
+            arena.table<Manifold>(section::kManifold)};
+}
+
+World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+World::~World() = default;
+
+Result<WorldPtr> World::create(const WorldDefinition& definition) {
+    if (Status status = check_definition(definition); !status) {
+        return status.error();
+    }
+    const DynamicsSettings capacities = dynamics_settings(definition);
+    Result<PodSystem> pods = PodSystem::create(definition, capacities.body_capacity);
+    if (!pods) {
+        return pods.error();
+    }
+    auto impl = std::make_unique<Impl>(definition, capacities, std::move(pods).value());
+    const DynamicsTables tables = impl->tables();
+    if (Status status = make_bodies(definition, tables); !status) {
+        return status.error();
+    }
+    impl->arena.set_row_count(section::kGlobals, 1);
+    impl->globals().seed = definition.settings.seed;
+    const std::vector<Player> players = impl->pods.initial_players();
+    impl->players().set_count(static_cast<std::uint32_t>(players.size()));
+    for (Slot slot = 0; slot < players.size(); ++slot) {
+        impl->players()[slot] = players[slot];
+        const BodyRow row = row_of(tables.motion, players[slot].body);
+        BodyRecord start{tables.motion[row], tables.properties[row]};
+        write_velocity({}, start.motion.linear_velocity);
+        write_velocity({}, start.motion.angular_velocity);
+        impl->pod_starts.push_back(start);
+        impl->pod_ids.push_back(players[slot].body);
+    }
+    return WorldPtr(new World(std::move(impl)));
+}
+
+} // namespace lockwind

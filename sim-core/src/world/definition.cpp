@@ -1,0 +1,126 @@
+#include "world/definition.h"
+
+#include "dynamics/step_constants.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace lockwind {
+
+namespace {
+
+constexpr Real kGravityMax = 1000.0;
+constexpr Real kLinearSpeedLimit = 1000.0;
+constexpr Real kAngularSpeedLimit = 1000.0;
+constexpr Real kBoundsMax = 16000.0;
+
+struct Range {
+    const char* name;
+    Real value;
+    Real low;
+    Real high;
+    const char* allowed;
+};
+
+bool outside(const Vec3& position, Real bounds) {
+    return abs(position.x) > bounds || abs(position.y) > bounds || abs(position.z) > bounds;
+}
+
+Status check_settings(const WorldSettings& settings) {
+    const Range ranges[] = {
+        {"tick_rate_hz", settings.tick_rate_hz, kTickRateMin, kTickRateMax, "10 .. 240"},
+        {"substeps", settings.substeps, 1, kSubstepsMax, "1 .. 16"},
+        {"gravity.x", settings.gravity.x, -kGravityMax, kGravityMax, "-1000 .. 1000 m/s^2"},
+        {"gravity.y", settings.gravity.y, -kGravityMax, kGravityMax, "-1000 .. 1000 m/s^2"},
+        {"gravity.z", settings.gravity.z, -kGravityMax, kGravityMax, "-1000 .. 1000 m/s^2"},
+        {"linear_speed_max", settings.linear_speed_max, 1, kLinearSpeedLimit, "1 .. 1000 m/s"},
+        {"angular_speed_max", settings.angular_speed_max, 1, kAngularSpeedLimit, "1 .. 1000 rad/s"},
+        {"bounds", settings.bounds, 1, kBoundsMax, "1 .. 16000 m"},
+    };
+    for (const Range& range : ranges) {
+        if (range.value < range.low || range.value > range.high) {
+            return Error{std::string("settings: ") + range.name + " must be " + range.allowed};
+        }
+    }
+    if (settings.body_capacity > kBodyCapacityMax || settings.pair_capacity > kPairCapacityMax ||
+        settings.manifold_capacity > kPairCapacityMax) {
+        return Error{"settings: body_capacity must be at most " + std::to_string(kBodyCapacityMax) +
+                     ", pair_capacity and manifold_capacity at most " +
+                     std::to_string(kPairCapacityMax)};
+    }
+    return Success{};
+}
+
+std::uint32_t plane_count(const WorldDefinition& definition) {
+    const auto is_plane = [](const BodyDefinition& body) {
+        return body.shape.type == ShapeType::plane;
+    };
+    return static_cast<std::uint32_t>(
+        std::count_if(definition.bodies.begin(), definition.bodies.end(), is_plane));
+}
+
+/// Balls alive at once: one a cooldown during a lifetime, the first and the one being made.
+std::uint64_t balls_max(const PodDefinition& pod) {
+    return pod.ball_lifetime_ticks / std::max(pod.ball_cooldown_ticks, 1U) + 2;
+}
+
+} // namespace
+
+Status check_definition(const WorldDefinition& definition) {
+    if (Status status = check_settings(definition.settings); !status) {
+        return status;
+    }
+    if (definition.pods.size() > kSlotsMax) {
+        return Error{"pods: " + std::to_string(definition.pods.size()) + ", but at most " +
+                     std::to_string(kSlotsMax) + " can play"};
+    }
+    std::vector<BodyId> ids;
+    for (const BodyDefinition& body : definition.bodies) {
+        const bool moves = body.mode != BodyMode::fixed;
+        if (moves && outside(body.position, definition.settings.bounds)) {
+            return Error{"body " + std::to_string(body.id) +
+                         ": position lies outside of settings.bounds"};
+        }
+        ids.push_back(body.id);
+    }
+    std::sort(ids.begin(), ids.end());
+    const auto twin = std::adjacent_find(ids.begin(), ids.end());
+    if (twin != ids.end()) {
+        return Error{"body " + std::to_string(*twin) + ": id is used twice"};
+    }
+    const DynamicsSettings dynamics = dynamics_settings(definition);
+    if (definition.bodies.size() > dynamics.body_capacity) {
+        return Error{"settings: body_capacity of " + std::to_string(dynamics.body_capacity) +
+                     " is too small for the scene's " + std::to_string(definition.bodies.size()) +
+                     " bodies"};
+    }
+    return Success{};
+}
+
+DynamicsSettings dynamics_settings(const WorldDefinition& definition) {
+    const WorldSettings& settings = definition.settings;
+    DynamicsSettings dynamics;
+    dynamics.tick_rate_hz = settings.tick_rate_hz;
+    dynamics.substeps = settings.substeps;
+    dynamics.gravity = settings.gravity;
+    dynamics.linear_speed_max = settings.linear_speed_max;
+    dynamics.angular_speed_max = settings.angular_speed_max;
+    std::uint64_t bodies = definition.bodies.size() + 8;
+    for (const PodDefinition& pod : definition.pods) {
+        bodies += balls_max(pod);
+    }
+    const auto derived = [](std::uint32_t given, std::uint64_t wanted, std::uint32_t limit) {
+        return given != 0 ? given
+                          : static_cast<std::uint32_t>(std::min<std::uint64_t>(wanted, limit));
+    };
+    dynamics.body_capacity = derived(settings.body_capacity, bodies, kBodyCapacityMax);
+    const std::uint64_t capacity = dynamics.body_capacity;
+    dynamics.pair_capacity = derived(
+        settings.pair_capacity, capacity * (24 + plane_count(definition)) + 256, kPairCapacityMax);
+    dynamics.manifold_capacity =
+        derived(settings.manifold_capacity, capacity * 12 + 256, kPairCapacityMax);
+    return dynamics;
+}
+
+} // namespace lockwind

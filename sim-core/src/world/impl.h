@@ -1,0 +1,55 @@
+#pragma once
+
+#include "base/arena.h"
+#include "base/state_hash.h"
+#include "dynamics/dynamics.h"
+#include "systems/pod.h"
+#include "systems/spawn.h"
+#include "world/event_log.h"
+#include "world/state.h"
+
+#include "lockwind/world.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lockwind {
+
+struct World::Impl {
+    Impl(const WorldDefinition& definition,
+         const DynamicsSettings& capacities,
+         PodSystem pod_system);
+
+    Globals& globals() { return arena.table<Globals>(section::kGlobals)[0]; }
+    Table<Player> players() { return arena.table<Player>(section::kPlayer); }
+    DynamicsTables tables() { return tables_of(arena); }
+    static DynamicsTables tables_of(StateArena& arena);
+    Error fault_error();
+    /// Whether a state can be stepped; see validate.h.
+    Status validate(StateArena& state);
+
+    // Constants of the match.
+    WorldSettings settings;
+    DynamicsSettings capacities;
+    std::vector<BodyRecord> pod_starts; // by slot
+    std::vector<BodyId> pod_ids;        // by slot
+
+    // The state, and where a snapshot is checked before it becomes the state.
+    StateArena arena;
+    StateArena staging;
+
+    // Scratch and derived data: nothing that the next tick reads.
+    StateHasher hasher;
+    Dynamics dynamics;
+    PodSystem pods;
+    Spawner spawner;
+    EventLog events;
+    StepFault fault = StepFault::none;
+    std::vector<std::uint8_t> manifold_seen; // by row of section "manifold", while checking a load
+};
+
+/// Whether a body that moves has left the world.
+bool is_outside(const BodyMotion& motion, Real bounds);
+
+} // namespace lockwind

@@ -1,0 +1,73 @@
+#include "base/canonical.h"
+#include "world/impl.h"
+#include "world/validate.h"
+
+#include "lockwind/hash_tree.h"
+
+#include <utility>
+
+namespace lockwind {
+
+Status World::Impl::validate(StateArena& state) {
+    const DynamicsTables rows = tables_of(state);
+    if (Status status = check_globals(state.table<Globals>(section::kGlobals)); !status) {
+        return status;
+    }
+    const Table<Player> state_players = state.table<Player>(section::kPlayer);
+    if (Status status = check_players(state_players, pod_ids); !status) {
+        return status;
+    }
+    if (Status status = check_bodies(rows, tables(), settings); !status) {
+        return status;
+    }
+    return check_contacts(rows, manifold_seen);
+}
+
+std::uint64_t World::state_hash() const {
+    return impl_->hasher.root(impl_->arena);
+}
+
+HashTree World::hash_tree() const {
+    return impl_->hasher.tree(impl_->arena);
+}
+
+void World::save(std::vector<std::byte>& out) const {
+    save_canonical(impl_->arena, out);
+}
+
+Status World::load(std::span<const std::byte> bytes) {
+    if (Status loaded = load_canonical(impl_->staging, bytes); !loaded) {
+        return loaded;
+    }
+    if (Status valid = impl_->validate(impl_->staging); !valid) {
+        return valid;
+    }
+    std::swap(impl_->arena, impl_->staging);
+    impl_->events.clear();
+    impl_->fault = StepFault::none;
+    return Success{};
+}
+
+StateSchema World::schema() {
+    return kWorldSections;
+}
+
+std::uint32_t World::row_count(std::uint32_t section) const {
+    LOCKWIND_ASSERT(section < section::kCount);
+    return impl_->arena.row_count(section);
+}
+
+std::span<std::byte> World::section_bytes(std::uint32_t section) {
+    LOCKWIND_ASSERT(section < section::kCount);
+    return impl_->arena.live_bytes(section);
+}
+
+Status World::check() const {
+    return impl_->validate(impl_->arena);
+}
+
+void World::drop_derived() {
+    impl_->dynamics.drop_derived();
+}
+
+} // namespace lockwind

@@ -1,0 +1,79 @@
+#pragma once
+
+#include "dynamics/body.h"
+#include "dynamics/contact.h"
+#include "systems/player.h"
+
+#include "lockwind/schema.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace lockwind {
+
+/// The world's own numbers: the one row of section "globals".
+struct Globals {
+    std::uint64_t tick;            // that this state is of
+    std::uint64_t seed;            // of every random stream
+    std::uint64_t event_hash;      // chain over all events so far, see event_log.h
+    std::uint64_t events_total;    // events so far
+    std::uint64_t created_total;   // bodies created in ticks so far
+    std::uint64_t destroyed_total; // bodies destroyed in ticks so far
+};
+static_assert(sizeof(Globals) == 48);
+
+/// How many rows live: the one row of section "arena".
+struct RowCounts {
+    std::uint32_t arena;
+    std::uint32_t globals;
+    std::uint32_t body;
+    std::uint32_t body_properties;
+    std::uint32_t pair;
+    std::uint32_t manifold;
+    std::uint32_t player;
+};
+static_assert(sizeof(RowCounts) == 28);
+
+/// Sections by number, in the order of kWorldSections.
+namespace section {
+inline constexpr std::uint32_t kArena = 0;
+inline constexpr std::uint32_t kGlobals = 1;
+inline constexpr std::uint32_t kBody = 2;
+inline constexpr std::uint32_t kBodyProperties = 3;
+inline constexpr std::uint32_t kPair = 4;
+inline constexpr std::uint32_t kManifold = 5;
+inline constexpr std::uint32_t kPlayer = 6;
+inline constexpr std::uint32_t kCount = 7;
+} // namespace section
+
+inline constexpr std::array kRowCountsFields{
+    LOCKWIND_FIELD(RowCounts, arena, 0, "", ""),
+    LOCKWIND_FIELD(RowCounts, globals, 0, "", ""),
+    LOCKWIND_FIELD(RowCounts, body, 0, "", ""),
+    LOCKWIND_FIELD(RowCounts, body_properties, 0, "", ""),
+    LOCKWIND_FIELD(RowCounts, pair, 0, "", ""),
+    LOCKWIND_FIELD(RowCounts, manifold, 0, "", ""),
+    LOCKWIND_FIELD(RowCounts, player, 0, "", ""),
+};
+
+inline constexpr std::array kGlobalsFields{
+    LOCKWIND_FIELD(Globals, tick, 0, "tick", ""),
+    LOCKWIND_FIELD(Globals, seed, 0, "", ""),
+    LOCKWIND_FIELD(Globals, event_hash, 0, "", ""),
+    LOCKWIND_FIELD(Globals, events_total, 0, "", ""),
+    LOCKWIND_FIELD(Globals, created_total, 0, "", ""),
+    LOCKWIND_FIELD(Globals, destroyed_total, 0, "", ""),
+};
+
+inline constexpr std::array<SectionDescriptor, section::kCount> kWorldSections{{
+    {"arena", "base", sizeof(RowCounts), false, "", kRowCountsFields},
+    {"globals", "world", sizeof(Globals), false, "", kGlobalsFields},
+    {"body", "dynamics", sizeof(BodyMotion), false, "id", kBodyMotionFields},
+    {"body_properties", "dynamics", sizeof(BodyProperties), false, "", kBodyPropertiesFields},
+    {"pair", "dynamics", sizeof(Pair), false, "", kPairFields},
+    {"manifold", "dynamics", sizeof(Manifold), false, "", kManifoldFields},
+    {"player", "systems", sizeof(Player), false, "", kPlayerFields},
+}};
+
+} // namespace lockwind

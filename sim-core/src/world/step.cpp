@@ -1,0 +1,237 @@
+#include "dynamics/make_body.h"
+#include "world/impl.h"
+
+#include "lockwind/phase_observer.h"
+#include "lockwind/slot_input.h"
+
+#include <array>
+#include <string>
+
+namespace lockwind {
+
+namespace {
+
+/// One run through the phases. Each reads the arena, and the scratch of earlier phases of this
+/// tick; each leaves its results in the arena.
+class Step {
+public:
+    Step(World::Impl& world, std::span<const SlotInput> inputs)
+        : world_(world), inputs_(inputs), tables_(world.tables()), tick_(world.globals().tick + 1) {
+    }
+
+    StepFault apply_inputs();
+    StepFault broad_phase();
+    StepFault narrow_phase();
+    StepFault solve();
+    StepFault restitution();
+    StepFault spawns_despawns();
+    StepFault events();
+    StepFault next_tick();
+
+private:
+    BodyId id(BodyRow row) const { return tables_.motion[row].id; }
+    std::uint32_t tick_low() const { return static_cast<std::uint32_t>(tick_); }
+    void report_contacts();
+    void score_hits();
+    void destroy(BodyRow row);
+    void remove_bodies();
+    void return_pod(Slot slot, BodyRow row);
+
+    World::Impl& world_;
+    std::span<const SlotInput> inputs_;
+    DynamicsTables tables_;
+    Tick tick_; // being made
+};
+
+struct Phase {
+    std::string_view name;
+    StepFault (Step::*run)();
+};
+
+constexpr std::array kPhases{
+    Phase{"apply_inputs", &Step::apply_inputs},
+    Phase{"broad_phase", &Step::broad_phase},
+    Phase{"narrow_phase", &Step::narrow_phase},
+    Phase{"solve", &Step::solve},
+    Phase{"restitution", &Step::restitution},
+    Phase{"spawns_despawns", &Step::spawns_despawns},
+    Phase{"events", &Step::events},
+    Phase{"next_tick", &Step::next_tick},
+};
+
+constexpr std::array<std::string_view, kPhases.size()> names_of_phases() {
+    std::array<std::string_view, kPhases.size()> names;
+    for (std::size_t phase = 0; phase < kPhases.size(); ++phase) {
+        names[phase] = kPhases[phase].name;
+    }
+    return names;
+}
+constexpr std::array<std::string_view, kPhases.size()> kPhaseNames = names_of_phases();
+
+} // namespace
+
+Status World::step(std::span<const SlotInput> inputs, PhaseObserver* observer) {
+    Impl& world = *impl_;
+    LOCKWIND_ASSERT(inputs.size() == slot_count());
+    if (world.fault != StepFault::none) {
+        return world.fault_error();
+    }
+    world.events.clear();
+    Step step(world, inputs);
+    for (std::uint32_t phase = 0; phase < kPhases.size(); ++phase) {
+        world.fault = (step.*kPhases[phase].run)();
+        if (world.fault != StepFault::none) {
+            return world.fault_error();
+        }
+        if (observer != nullptr) {
+            observer->after_phase(phase);
+        }
+    }
+    return Success{};
+}
+
+std::span<const std::string_view> World::phases() {
+    return kPhaseNames;
+}
+
+StepFault Step::apply_inputs() {
+    world_.pods.apply_inputs(tables_, world_.players(), inputs_);
+    return StepFault::none;
+}
+
+StepFault Step::broad_phase() {
+    return world_.dynamics.broad_phase(tables_);
+}
+
+StepFault Step::narrow_phase() {
+    return world_.dynamics.narrow_phase(tables_, tick_low());
+}
+
+StepFault Step::solve() {
+    world_.dynamics.solve(tables_, tick_low());
+    return StepFault::none;
+}
+
+StepFault Step::restitution() {
+    world_.dynamics.restitution(tables_);
+    return StepFault::none;
+}
+
+/// Contacts and hits are told by row, so they are turned into events before rows move.
+StepFault Step::spawns_despawns() {
+    report_contacts();
+    score_hits();
+    remove_bodies();
+    Spawner& spawner = world_.spawner;
+    const std::size_t returned = spawner.created().size();
+    world_.pods.spawn_balls(tables_, world_.players(), world_.globals().seed, tick_, spawner);
+    for (const BodyRecord& ball : spawner.created().subspan(returned)) {
+        world_.events.add(EventType::created, ball.motion.id, spawner_of(ball.motion.id), 0);
+        ++world_.globals().created_total;
+    }
+    return spawner.apply(tables_);
+}
+
+void Step::report_contacts() {
+    for (const ContactChange& change : world_.dynamics.contact_changes()) {
+        const EventType type = change.begin ? EventType::contact_begin : EventType::contact_end;
+        world_.events.add(type, id(change.row_a), id(change.row_b), 0);
+    }
+    for (const ContactHit& hit : world_.dynamics.contact_hits()) {
+        world_.events.add(EventType::hit, id(hit.row_a), id(hit.row_b), hit.impulse);
+    }
+}
+
+void Step::score_hits() {
+    const Table<Player> players = world_.players();
+    for (const ContactHit& hit : world_.dynamics.contact_hits()) {
+        Goal goal{};
+        if (is_goal(tables_, players, hit, goal) && !world_.spawner.is_destroyed(goal.ball)) {
+            Player& scorer = players[goal.by];
+            ++scorer.score;
+            world_.events.add(
+                EventType::score, scorer.body, players[goal.victim].body, scorer.score);
+            destroy(goal.ball);
+        }
+    }
+}
+
+void Step::destroy(BodyRow row) {
+    if (world_.spawner.destroy(row)) {
+        world_.events.add(EventType::destroyed, id(row), 0, 0);
+        ++world_.globals().destroyed_total;
+    }
+}
+
+void Step::remove_bodies() {
+    for (BodyRow row = 0; row < tables_.motion.count(); ++row) {
+        const BodyProperties& properties = tables_.properties[row];
+        if (properties.despawn_tick == tick_low() && properties.despawn_tick != 0) {
+            destroy(row);
+        } else if (properties.mode != static_cast<std::uint8_t>(BodyMode::fixed) &&
+                   is_outside(tables_.motion[row], world_.settings.bounds)) {
+            const Slot slot = slot_of(world_.players(), id(row));
+            if (slot == kNoIndex) {
+                destroy(row);
+            } else {
+                return_pod(slot, row);
+            }
+        }
+    }
+}
+
+/// Leaves and comes in one merge, so that no pair or bounds of its old place stay.
+void Step::return_pod(Slot slot, BodyRow row) {
+    world_.spawner.destroy(row);
+    BodyRecord pod = world_.pod_starts[slot];
+    pod.properties.spawn_count = tables_.properties[row].spawn_count;
+    world_.spawner.create(pod);
+    world_.events.add(EventType::respawned, id(row), 0, 0);
+}
+
+StepFault Step::events() {
+    Globals& globals = world_.globals();
+    world_.events.sort();
+    for (const Event& event : world_.events.events()) {
+        globals.event_hash = chain_event(globals.event_hash, event);
+    }
+    globals.events_total += world_.events.events().size();
+    return StepFault::none;
+}
+
+StepFault Step::next_tick() {
+    world_.globals().tick = tick_;
+    return StepFault::none;
+}
+
+bool is_outside(const BodyMotion& motion, Real bounds) {
+    for (const std::int64_t coordinate : motion.position) {
+        if (coordinate > bounds.raw() || coordinate < -bounds.raw()) {
+            return true;
+        }
+    }
+    return false;
+}
+
+Error World::Impl::fault_error() {
+    const Tick tick = globals().tick;
+    const auto full = [&](const char* setting, std::uint32_t capacity) {
+        return Error{"step to tick " + std::to_string(tick + 1) + ": settings." + setting + " of " +
+                     std::to_string(capacity) + " is full; raise it in the scene"};
+    };
+    switch (fault) {
+    case StepFault::bodies_full:
+        return full("body_capacity", capacities.body_capacity);
+    case StepFault::pairs_full:
+    case StepFault::events_full:
+        return full("pair_capacity", capacities.pair_capacity);
+    case StepFault::manifolds_full:
+        return full("manifold_capacity", capacities.manifold_capacity);
+    case StepFault::none:
+        break;
+    }
+    LOCKWIND_ASSERT(false && "no fault");
+    return Error{};
+}
+
+} // namespace lockwind

@@ -1,0 +1,321 @@
+#include "world/validate.h"
+
+#include "dynamics/make_body.h"
+#include "geometry/manifold.h"
+#include "systems/spawn.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <string>
+
+namespace lockwind {
+
+namespace {
+
+constexpr std::int64_t kUnitSquare = std::int64_t{1} << 60U;    // 1 in Q4.60
+constexpr std::int64_t kUnitTolerance = std::int64_t{1} << 42U; // 2^-18 of it
+constexpr std::uint32_t kSpawnCountMax = 0x7fffffffU;
+constexpr std::int32_t kMotionSumMax = 1 << 20U; // Q9.22: 25 cm
+constexpr std::int64_t kFatBoundsSlack = 2;      // m a side, beyond the body
+
+Error bad(const char* section_name, std::uint32_t row, const char* field) {
+    return Error{std::string("snapshot: ") + section_name + " row " + std::to_string(row) + ": " +
+                 field + " is out of range"};
+}
+
+bool all_zero(std::span<const std::uint8_t> bytes) {
+    return std::all_of(bytes.begin(), bytes.end(), [](std::uint8_t byte) { return byte == 0; });
+}
+
+bool all_within(std::span<const std::int32_t> values, std::int64_t limit) {
+    return std::all_of(values.begin(), values.end(), [&](std::int32_t value) {
+        return value >= -limit && value <= limit;
+    });
+}
+
+/// Unit length of a Q2.30 vector of 3 or 4 components.
+bool is_unit(std::span<const std::int32_t> vector) {
+    if (!all_within(vector, std::int64_t{1} << 30U)) {
+        return false;
+    }
+    std::int64_t square = 0;
+    for (const std::int32_t component : vector) {
+        square += std::int64_t{component} * component;
+    }
+    return std::abs(square - kUnitSquare) <= kUnitTolerance;
+}
+
+bool is_empty_or_near(const BodyMotion& motion, const BodyProperties& properties) {
+    const std::int32_t* bounds = motion.fat_bounds;
+    constexpr std::int32_t kLow = std::numeric_limits<std::int32_t>::min();
+    constexpr std::int32_t kHigh = std::numeric_limits<std::int32_t>::max();
+    if (properties.shape == static_cast<std::uint8_t>(ShapeType::plane)) {
+        const auto is = [](std::int32_t value) {
+            return [value](std::int32_t bound) { return bound == value; };
+        };
+        if (std::all_of(bounds, bounds + 3, is(kLow)) &&
+            std::all_of(bounds + 3, bounds + 6, is(kHigh))) {
+            return true;
+        }
+    }
+    if (bounds[0] > bounds[3]) {
+        return true;
+    }
+    // Q9.22 to Q15.16, and both sides of the body.
+    const std::int64_t side_max =
+        (std::int64_t{properties.bounding_radius} >> 5U) + (kFatBoundsSlack << 16U);
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::int64_t side = std::int64_t{bounds[axis + 3]} - bounds[axis];
+        if (side < 0 || side > side_max) {
+            return false;
+        }
+    }
+    return true;
+}
+
+const char* bad_motion_field(const BodyMotion& motion, const BodyProperties& properties) {
+    constexpr std::int64_t kPositionMax = kBodyPositionMax.raw();
+    constexpr std::int64_t kVelocityMax = convert<Velocity>(kBodySpeedMax).raw();
+    for (const std::int64_t coordinate : motion.position) {
+        if (coordinate > kPositionMax || coordinate < -kPositionMax) {
+            return "position";
+        }
+    }
+    if (!is_unit(motion.orientation)) {
+        return "orientation";
+    }
+    if (!all_within(motion.linear_velocity, kVelocityMax)) {
+        return "linear_velocity";
+    }
+    if (!all_within(motion.angular_velocity, kVelocityMax)) {
+        return "angular_velocity";
+    }
+    if (!is_empty_or_near(motion, properties)) {
+        return "fat_bounds";
+    }
+    for (const std::int32_t sum : motion.motion_sum) {
+        if (sum < 0 || sum > kMotionSumMax) {
+            return "motion_sum";
+        }
+    }
+    return nullptr;
+}
+
+/// What make_body derives from shape and mode alone.
+bool same_build(const BodyProperties& a, const BodyProperties& b) {
+    return a.mode == b.mode && a.shape == b.shape && a.bounding_radius == b.bounding_radius &&
+           a.gyration_radius == b.gyration_radius &&
+           a.inverse_gyration_radius == b.inverse_gyration_radius &&
+           std::equal(a.size, a.size + 3, b.size) &&
+           std::equal(a.inverse_inertia, a.inverse_inertia + 3, b.inverse_inertia);
+}
+
+/// Makes a body of the same shape and mode and compares.
+bool is_buildable(const BodyMotion& motion,
+                  const BodyProperties& properties,
+                  const WorldSettings& settings) {
+    if (properties.mode > static_cast<std::uint8_t>(BodyMode::dynamic) ||
+        properties.shape > static_cast<std::uint8_t>(ShapeType::plane)) {
+        return false;
+    }
+    const BodyReading reading = read_body(motion, properties);
+    BodyDefinition definition;
+    definition.id = 1;
+    definition.mode = reading.mode;
+    definition.shape = reading.shape;
+    definition.mass = 1;
+    BodyRecord built{};
+    return make_body(definition, settings, built.motion, built.properties).ok() &&
+           same_build(built.properties, properties);
+}
+
+const char* bad_properties_field(const BodyProperties& properties) {
+    const bool dynamic = properties.mode == static_cast<std::uint8_t>(BodyMode::dynamic);
+    // 1 / kBodyMassMax and 1 / kBodyMassMin, Q24.40.
+    constexpr std::int64_t kInverseMassMin = (std::int64_t{1} << 40U) / 1'000'000'000;
+    constexpr std::int64_t kInverseMassMax = (std::int64_t{1} << 40U) * 1'000'001;
+    if (dynamic
+            ? properties.inverse_mass < kInverseMassMin || properties.inverse_mass > kInverseMassMax
+            : properties.inverse_mass != 0) {
+        return "inverse_mass";
+    }
+    if (properties.friction < 0 || properties.friction > convert<Coefficient>(kFrictionMax).raw()) {
+        return "friction";
+    }
+    if (properties.restitution < 0 ||
+        properties.restitution > convert<Coefficient>(kRestitutionMax).raw()) {
+        return "restitution";
+    }
+    if (!all_zero(properties.zero)) {
+        return "zero";
+    }
+    return properties.spawn_count > kSpawnCountMax ? "spawn_count" : nullptr;
+}
+
+bool is_dynamic(const DynamicsTables& tables, BodyRow row) {
+    return tables.properties[row].mode == static_cast<std::uint8_t>(BodyMode::dynamic);
+}
+
+const char* bad_pair_field(const DynamicsTables& tables, std::uint32_t index) {
+    const Pair& pair = tables.pairs[index];
+    if (pair.row_a >= pair.row_b || pair.row_b >= tables.motion.count()) {
+        return "row_b";
+    }
+    if (index > 0) {
+        const Pair& former = tables.pairs[index - 1];
+        if (former.row_a > pair.row_a ||
+            (former.row_a == pair.row_a && former.row_b >= pair.row_b)) {
+            return "row_a";
+        }
+    }
+    if (!is_dynamic(tables, pair.row_a) && !is_dynamic(tables, pair.row_b)) {
+        return "row_a";
+    }
+    if (pair.axis > 15) {
+        return "axis";
+    }
+    if ((pair.manifold == kNoIndex) != (pair.point_count == 0)) {
+        return "manifold";
+    }
+    return all_zero(pair.zero) ? nullptr : "zero";
+}
+
+/// Largest distance of a contact point from the centre of `row`, Q9.22 m: the body and 1 m; on a
+/// plane, its partner's.
+std::int64_t reach(const DynamicsTables& tables, BodyRow row, BodyRow partner) {
+    const std::int64_t own = tables.properties[row].bounding_radius;
+    return (own != 0 ? own : tables.properties[partner].bounding_radius) + (std::int64_t{1} << 22U);
+}
+
+const char* bad_manifold_field(const DynamicsTables& tables, const Pair& pair) {
+    constexpr std::int64_t kImpulseMax = std::int64_t{2000} << 20U;
+    const Manifold& manifold = tables.manifolds[pair.manifold];
+    if (manifold.row_a != pair.row_a || manifold.row_b != pair.row_b) {
+        return "row_a";
+    }
+    if (manifold.point_count != pair.point_count || manifold.point_count > 4) {
+        return "point_count";
+    }
+    if (!is_unit(manifold.normal) || !is_unit(manifold.tangent)) {
+        return "normal";
+    }
+    if (!all_within(manifold.friction_impulse, kImpulseMax) ||
+        !all_within({&manifold.twist_impulse, 1}, kImpulseMax) ||
+        !all_within(manifold.normal_impulse, kImpulseMax)) {
+        return "normal_impulse";
+    }
+    const std::int64_t reach_a = reach(tables, pair.row_a, pair.row_b);
+    const std::int64_t reach_b = reach(tables, pair.row_b, pair.row_a);
+    if (!all_within(manifold.anchor_a, reach_a) || !all_within(manifold.local_a, reach_a)) {
+        return "local_a";
+    }
+    if (!all_within(manifold.local_b, reach_b)) {
+        return "local_b";
+    }
+    if (!all_within(manifold.centre_delta, reach_a + reach_b)) {
+        return "centre_delta";
+    }
+    if (!all_within(manifold.separation, reach_a + reach_b)) {
+        return "separation";
+    }
+    for (std::uint32_t point = 0; point < kManifoldPointsMax; ++point) {
+        if (manifold.normal_impulse[point] < 0) {
+            return "normal_impulse";
+        }
+    }
+    return all_zero(manifold.zero) ? nullptr : "zero";
+}
+
+} // namespace
+
+Status check_globals(const Table<Globals>& globals) {
+    if (globals.count() != 1) {
+        return Error{"snapshot: section \"globals\" must have 1 row"};
+    }
+    return Success{};
+}
+
+Status check_players(const Table<Player>& players, std::span<const BodyId> pods) {
+    if (players.count() != pods.size()) {
+        return Error{"snapshot: " + std::to_string(players.count()) +
+                     " players, but the match has " + std::to_string(pods.size()) + " slots"};
+    }
+    for (Slot slot = 0; slot < players.count(); ++slot) {
+        const Player& player = players[slot];
+        if (player.body != pods[slot]) {
+            return bad("player", slot, "body");
+        }
+        if (player.shooting > 1) {
+            return bad("player", slot, "shooting");
+        }
+        if (!all_zero(player.zero)) {
+            return bad("player", slot, "zero");
+        }
+    }
+    return Success{};
+}
+
+Status check_bodies(const DynamicsTables& tables,
+                    const DynamicsTables& known,
+                    const WorldSettings& settings) {
+    const std::uint32_t count = tables.motion.count();
+    if (tables.properties.count() != count) {
+        return Error{"snapshot: sections \"body\" and \"body_properties\" differ in rows"};
+    }
+    for (BodyRow row = 0; row < count; ++row) {
+        const BodyMotion& motion = tables.motion[row];
+        const BodyProperties& properties = tables.properties[row];
+        if (motion.id == 0 || (row > 0 && tables.motion[row - 1].id >= motion.id)) {
+            return bad("body", row, "id");
+        }
+        const bool is_known =
+            row < known.properties.count() && same_build(known.properties[row], properties);
+        if (!is_known && !is_buildable(motion, properties, settings)) {
+            return bad("body_properties", row, "mode, shape, size or inertia");
+        }
+        if (const char* field = bad_properties_field(properties); field != nullptr) {
+            return bad("body_properties", row, field);
+        }
+        if (const char* field = bad_motion_field(motion, properties); field != nullptr) {
+            return bad("body", row, field);
+        }
+        const BodyRow spawner =
+            spawner_of(motion.id) != 0 ? row_of(tables.motion, spawner_of(motion.id)) : kNoIndex;
+        if (spawner != kNoIndex &&
+            static_cast<std::uint32_t>(motion.id) > tables.properties[spawner].spawn_count) {
+            return bad("body_properties", spawner, "spawn_count");
+        }
+    }
+    return Success{};
+}
+
+Status check_contacts(const DynamicsTables& tables, std::span<std::uint8_t> seen) {
+    std::fill_n(seen.begin(), tables.manifolds.count(), std::uint8_t{0});
+    for (std::uint32_t index = 0; index < tables.pairs.count(); ++index) {
+        if (const char* field = bad_pair_field(tables, index); field != nullptr) {
+            return bad("pair", index, field);
+        }
+        const Pair& pair = tables.pairs[index];
+        if (pair.manifold == kNoIndex) {
+            continue;
+        }
+        if (pair.manifold >= tables.manifolds.count() || seen[pair.manifold] != 0) {
+            return bad("pair", index, "manifold");
+        }
+        seen[pair.manifold] = 1;
+        if (const char* field = bad_manifold_field(tables, pair); field != nullptr) {
+            return bad("manifold", pair.manifold, field);
+        }
+    }
+    constexpr Manifold kFree{};
+    for (std::uint32_t row = 0; row < tables.manifolds.count(); ++row) {
+        if (seen[row] == 0 && std::memcmp(&tables.manifolds[row], &kFree, sizeof(kFree)) != 0) {
+            return bad("manifold", row, "a free row");
+        }
+    }
+    return Success{};
+}
+
+} // namespace lockwind

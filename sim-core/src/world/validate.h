@@ -1,0 +1,30 @@
+#pragma once
+
+#include "dynamics/dynamics.h"
+#include "systems/player.h"
+#include "world/state.h"
+
+#include "lockwind/result.h"
+#include "lockwind/world_definition.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lockwind {
+
+// Whether rows are such as a step leaves them: a state that passes can be stepped without leaving a
+// table, an overflow or an endless loop. An Error names section, row and field. Constants of the
+// match are compared, what a body's shape implies is made anew and compared; the rest is held to
+// ranges.
+
+Status check_globals(const Table<Globals>& globals);
+Status check_players(const Table<Player>& players, std::span<const BodyId> pods);
+/// `known` is a sound state whose bodies need not be looked at again.
+Status check_bodies(const DynamicsTables& tables,
+                    const DynamicsTables& known,
+                    const WorldSettings& settings);
+/// `seen` is scratch of manifold capacity.
+Status check_contacts(const DynamicsTables& tables, std::span<std::uint8_t> seen);
+
+} // namespace lockwind
