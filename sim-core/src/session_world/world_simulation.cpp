@@ -1,0 +1,188 @@
+#include "lockwind/world_simulation.h"
+
+#include "base/field_access.h"
+#include "world/state.h"
+
+#include "lockwind/player_input.h"
+
+namespace lockwind {
+
+namespace {
+
+constexpr std::string_view kDefaultField = "body.linear_velocity.x";
+
+std::string field_names(StateSchema schema) {
+    std::string names;
+    for (const SectionDescriptor& section : schema) {
+        for (const FieldDescriptor& field : section.fields) {
+            names += names.empty() ? "" : ", ";
+            names += std::string(section.name) + "." + std::string(field.name);
+        }
+    }
+    return names;
+}
+
+std::string phase_names() {
+    std::string names;
+    for (const std::string_view phase : World::phases()) {
+        names += names.empty() ? "" : ", ";
+        names += phase;
+    }
+    return names;
+}
+
+/// Row to corrupt: the first dynamic body's in the sections of bodies, else the first.
+std::uint32_t first_row(const World& world, std::uint32_t section) {
+    if (section != section::kBody && section != section::kBodyProperties) {
+        return 0;
+    }
+    for (BodyRow row = 0; row < world.body_count(); ++row) {
+        if (world.body_at(row).mode == BodyMode::dynamic) {
+            return row;
+        }
+    }
+    return 0;
+}
+
+/// Adds `delta` to a component's raw value. False where the section has no row.
+bool add_raw(World& world, const FieldPlace& place, std::int64_t delta) {
+    const std::uint32_t row = first_row(world, place.section);
+    if (row >= world.row_count(place.section)) {
+        return false;
+    }
+    const SectionDescriptor& section = World::schema()[place.section];
+    const FieldDescriptor& field = section.fields[place.field];
+    std::byte* bytes =
+        world.section_bytes(place.section).data() + std::size_t{section.stride_bytes} * row;
+    const std::uint64_t raw = read_component(field, place.component, bytes);
+    write_component(field, place.component, bytes, raw + static_cast<std::uint64_t>(delta));
+    return true;
+}
+
+} // namespace
+
+struct WorldSimulation::Impl final : PhaseObserver {
+    explicit Impl(WorldPtr the_world) : world(std::move(the_world)) {}
+
+    void after_phase(std::uint32_t phase) override {
+        if (phase == fault_phase) {
+            const std::optional<FieldPlace> place = find_field(World::schema(), kDefaultField);
+            add_raw(*world, *place, 1);
+        }
+        if (observer != nullptr) {
+            observer->after_phase(phase);
+        }
+    }
+
+    WorldPtr world;
+    PhaseObserver* observer = nullptr;
+    std::uint32_t fault_phase = kNoIndex;
+};
+
+WorldSimulation::WorldSimulation(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+WorldSimulation::~WorldSimulation() = default;
+
+Result<std::unique_ptr<WorldSimulation>>
+WorldSimulation::create(const WorldDefinition& definition) {
+    Result<WorldPtr> world = World::create(definition);
+    if (!world) {
+        return world.error();
+    }
+    auto impl = std::make_unique<Impl>(std::move(world).value());
+    return std::unique_ptr<WorldSimulation>(new WorldSimulation(std::move(impl)));
+}
+
+World& WorldSimulation::world() {
+    return *impl_->world;
+}
+
+const World& WorldSimulation::world() const {
+    return *impl_->world;
+}
+
+std::uint32_t WorldSimulation::slot_count() const {
+    return impl_->world->slot_count();
+}
+
+std::uint32_t WorldSimulation::input_size_bytes() const {
+    return kPlayerInputSizeBytes;
+}
+
+Tick WorldSimulation::tick() const {
+    return impl_->world->tick();
+}
+
+Status WorldSimulation::advance(std::span<const SlotInput> inputs) {
+    return impl_->world->step(inputs, impl_.get());
+}
+
+std::uint64_t WorldSimulation::state_hash() const {
+    return impl_->world->state_hash();
+}
+
+HashTree WorldSimulation::hash_tree() const {
+    return impl_->world->hash_tree();
+}
+
+void WorldSimulation::save(std::vector<std::byte>& out) const {
+    impl_->world->save(out);
+}
+
+Status WorldSimulation::load(std::span<const std::byte> bytes) {
+    return impl_->world->load(bytes);
+}
+
+StateSchema WorldSimulation::schema() const {
+    return World::schema();
+}
+
+std::span<const std::string_view> WorldSimulation::phases() const {
+    return World::phases();
+}
+
+void WorldSimulation::observe(PhaseObserver* observer) {
+    impl_->observer = observer;
+}
+
+bool WorldSimulation::corrupt(std::string_view field) {
+    return corrupt_field(field).ok();
+}
+
+Status WorldSimulation::corrupt_field(std::string_view field) {
+    World& world = *impl_->world;
+    const std::string_view path = field.empty() ? kDefaultField : field;
+    const std::optional<FieldPlace> place = find_field(World::schema(), path);
+    if (!place) {
+        return Error{"no field \"" + std::string(path) +
+                     "\"; the state has: " + field_names(World::schema())};
+    }
+    if (!add_raw(world, *place, 1)) {
+        return Error{"field \"" + std::string(path) + "\": the section has no row now"};
+    }
+    if (!world.check()) {
+        add_raw(world, *place, -2);
+        if (!world.check()) {
+            add_raw(world, *place, 1);
+            return Error{"field \"" + std::string(path) +
+                         "\": another value would leave no state that can be stepped"};
+        }
+    }
+    return Success{};
+}
+
+Status WorldSimulation::set_phase_fault(std::string_view phase) {
+    if (phase.empty()) {
+        impl_->fault_phase = kNoIndex;
+        return Success{};
+    }
+    for (std::uint32_t index = 0; index < World::phases().size(); ++index) {
+        if (World::phases()[index] == phase) {
+            impl_->fault_phase = index;
+            return Success{};
+        }
+    }
+    return Error{"no phase \"" + std::string(phase) + "\"; the step has: " + phase_names()};
+}
+
+} // namespace lockwind
