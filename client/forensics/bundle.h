@@ -22,7 +22,7 @@ struct DesyncEvidence {
     std::uint64_t server_hash = 0;           // of state(bad_tick), when it was confirmed
     std::uint64_t client_hash = 0;           // as the client reported it
     std::span<const std::byte> server_state; // state(bad_tick), as kept
-    DesyncParty server;
+    Party server;
 };
 
 /// Everything that tells where a desync came from, in one file.
@@ -32,7 +32,7 @@ struct Bundle {
     Tick bad_tick = 0;
     std::uint64_t server_hash = 0;
     std::uint64_t client_hash = 0;
-    DesyncParty server;
+    Party server;
     std::vector<std::vector<SlotInput>> inputs; // the server's, of the interval
     std::vector<std::byte> agreed_state;        // the server's
     std::vector<std::byte> server_state;        // of bad_tick

@@ -25,13 +25,6 @@ struct DesyncInterval {
     Tick bad_tick() const { return agreed_tick + inputs.size(); }
 };
 
-/// What one party knows of itself.
-struct DesyncParty {
-    std::string sim_version;
-    std::string build_info;
-    MatchConfig config;
-};
-
 /// What a client claims of the bad tick.
 struct DesyncClaim {
     Slot slot = 0;
@@ -45,35 +38,40 @@ inline constexpr std::size_t kDesyncTicksMax = 1024;
 inline constexpr std::size_t kTraceStateBytesMax = 24U << 20U;
 
 /// Re-simulates the interval in trace mode and packs what the server asks for with a DesyncQuery
-/// into one blob (BlobKind::desync_report). `simulation` is left as it was, observed by `observer`,
-/// which is also called in every traced phase (a fault injected there then shows where it is). An
-/// Error where the agreed state cannot be loaded or a step fails.
+/// into one blob (BlobKind::desync_report). `simulation` is left as trace_interval leaves it. An
+/// Error where the agreed state cannot be loaded, a step fails, or the blob would be larger than
+/// kBlobSizeBytesMax.
 Result<std::vector<std::byte>> build_desync_report(Simulation& simulation,
                                                    const DesyncInterval& interval,
-                                                   const DesyncParty& client,
+                                                   const Party& client,
                                                    const DesyncClaim& claim,
                                                    PhaseObserver* observer = nullptr);
 
 /// The same as the server reads it. Nothing in it is to be believed but what was recomputed.
 struct DesyncReport {
-    DesyncParty client;
+    Party client;
     Slot slot = 0;
     Tick agreed_tick = 0;
     std::vector<std::byte> agreed_state;
     std::vector<std::vector<SlotInput>> inputs;
     std::uint64_t reported_hash = 0;
     std::vector<std::byte> reported_state;
-    Trace trace;
-    std::uint64_t recomputed_hash = 0; // after the trace's last phase
+    Trace trace; // whole: a start and every phase of every tick of the interval
+
+    /// After the trace's last phase.
+    std::uint64_t recomputed_hash() const { return trace.entries.back().hash; }
 };
 
 Result<DesyncReport> decode_desync_report(std::span<const std::byte> bytes);
 
-/// Loads interval.agreed_state, advances over the inputs and traces them with states; then restores
-/// the state that `simulation` had, and leaves `observer` observing.
+/// Loads interval.agreed_state, advances over the inputs and traces them with states. `observer` is
+/// called in every traced phase, before the state is looked at: a fault injected there shows where
+/// it is. Then `simulation` gets back the state that it had, and `observer` observes it. A state
+/// that was corrupted so far that load() refuses it cannot be given back: the simulation then keeps
+/// the re-simulated one of the bad tick.
 Result<Trace> trace_interval(Simulation& simulation,
                              const DesyncInterval& interval,
-                             const DesyncParty& party,
+                             const Party& party,
                              PhaseObserver* observer = nullptr);
 
 } // namespace lockwind

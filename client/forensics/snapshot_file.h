@@ -1,7 +1,7 @@
 #pragma once
 
 #include "forensics/owned_schema.h"
-#include "session/messages.h"
+#include "forensics/trace.h"
 
 #include "lockwind/result.h"
 #include "lockwind/types.h"
@@ -15,9 +15,7 @@ namespace lockwind {
 
 /// One state in a file that describes itself.
 struct Snapshot {
-    std::string sim_version;
-    std::string build_info;
-    MatchConfig config;
+    Party party;
     Tick tick = 0;
     std::uint64_t hash = 0;
     OwnedSchema schema;

@@ -17,14 +17,19 @@
 
 namespace lockwind {
 
-/// What made a trace: enough to read its states without the program that wrote it.
-struct TraceHeader {
+/// Who ran a simulation, and of what.
+struct Party {
     std::string sim_version;
     std::string build_info;
     MatchConfig config;
+};
+
+/// What made a trace: enough to read its states without the program that wrote it.
+struct TraceHeader {
+    Party party;
     std::vector<std::string> phases;
     OwnedSchema schema;
-    bool states = false; // every entry carries its state
+    bool states = false; // entries carry their states
 };
 
 /// The state after one phase of one tick.
@@ -45,24 +50,30 @@ public:
 };
 inline constexpr std::uint32_t kTraceStart = 0xffffffffU;
 
+/// The header of a trace of `simulation`.
+TraceHeader trace_header(const Simulation& simulation, Party party, bool states);
+
 /// A short trace in memory.
 struct Trace final : TraceSink {
     TraceHeader header;
     std::vector<TraceEntry> entries;
 
     Status add(TraceEntry entry) override;
-    std::size_t packed_bytes() const;
 };
 
-/// Hashes (and packs) the state after every phase of a simulation's advances. The simulation must
-/// not outlive it without observe(nullptr).
+struct TraceOptions {
+    bool states = false;
+    /// Once the packed states pass this, the rest of the trace holds hashes only.
+    std::uint64_t state_bytes_max = UINT64_MAX;
+    /// Called before each state is looked at: a test's fault injection. Not owned.
+    PhaseObserver* first = nullptr;
+};
+
+/// Hashes (and packs) the state after every phase of a simulation's advances. Outlives its last
+/// advance, or observe(nullptr) comes first.
 class TraceRecorder final : public PhaseObserver {
 public:
-    /// `first`, where given, is called before each state is looked at: a test's fault injection.
-    TraceRecorder(const Simulation& simulation,
-                  TraceSink& sink,
-                  bool states,
-                  PhaseObserver* first = nullptr);
+    TraceRecorder(const Simulation& simulation, TraceSink& sink, const TraceOptions& options);
 
     /// Records the start: the simulation's state as it is. Call once, before the first advance.
     void start();
@@ -71,13 +82,13 @@ public:
     const Status& status() const { return status_; }
 
 private:
-    void record(Tick tick, std::uint32_t phase);
+    void record(std::uint32_t phase);
 
     const Simulation& simulation_;
     TraceSink& sink_;
-    bool states_;
-    PhaseObserver* first_;
+    TraceOptions options_;
     Tick tick_ = 0;
+    std::uint64_t packed_bytes_ = 0;
     StateChainPacker packer_;
     std::vector<std::byte> state_;
     Status status_ = Success{};
@@ -91,16 +102,21 @@ public:
     Status add(TraceEntry entry) override;
     Status finish();
 
+    TraceWriter(TraceWriter&& other) noexcept;
+    TraceWriter& operator=(TraceWriter&&) = delete;
+    /// Without finish() nothing stays.
+    ~TraceWriter() override;
+
 private:
-    TraceWriter(std::string path, RecordWriter file)
-        : path_(std::move(path)), file_(std::move(file)) {}
+    TraceWriter(std::string path, RecordWriter file);
 
     std::string path_;
     RecordWriter file_;
     std::uint64_t entries_ = 0;
+    bool finished_ = false;
 };
 
-/// Entries of a trace in order, with states unpacked; holds one.
+/// Entries of a trace in order; holds one.
 class TraceSource {
 public:
     virtual ~TraceSource() = default;
@@ -119,6 +135,7 @@ public:
 private:
     TraceReader(RecordReader file, TraceHeader header)
         : file_(std::move(file)), header_(std::move(header)) {}
+    Error damaged(const std::string& what) const;
 
     RecordReader file_;
     TraceHeader header_;

@@ -1,14 +1,13 @@
 #include "log/log_codec.h"
 
 #include "log.pb.h"
+#include "session/match_config.h"
 
 #include <algorithm>
 
 namespace lockwind {
 
 namespace {
-
-constexpr std::uint32_t kTickRateHzMax = 1000;
 
 std::string bytes_text(std::span<const std::byte> bytes) {
     return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -17,34 +16,6 @@ std::string bytes_text(std::span<const std::byte> bytes) {
 std::vector<std::byte> text_bytes(const std::string& text) {
     const std::span<const std::byte> bytes = std::as_bytes(std::span(text.data(), text.size()));
     return {bytes.begin(), bytes.end()};
-}
-
-void encode_config(const MatchConfig& config, log_format::MatchConfig& out) {
-    out.set_match(config.match);
-    out.set_mode(config.mode);
-    out.set_scene_name(config.scene_name);
-    out.set_scene_text(config.scene_text);
-    out.set_seed(config.seed);
-    out.set_tick_rate_hz(config.tick_rate_hz);
-    out.set_players(config.players);
-    out.set_input_delay_ticks(config.input_delay_ticks);
-    out.set_hash_interval_ticks(config.hash_interval_ticks);
-    out.set_ticks(config.ticks);
-}
-
-MatchConfig decode_config(const log_format::MatchConfig& message) {
-    MatchConfig config;
-    config.match = message.match();
-    config.mode = message.mode();
-    config.scene_name = message.scene_name();
-    config.scene_text = message.scene_text();
-    config.seed = message.seed();
-    config.tick_rate_hz = message.tick_rate_hz();
-    config.players = message.players();
-    config.input_delay_ticks = message.input_delay_ticks();
-    config.hash_interval_ticks = message.hash_interval_ticks();
-    config.ticks = message.ticks();
-    return config;
 }
 
 /// Fills one kind of the oneof from one kind of the variant.
@@ -178,6 +149,34 @@ Result<LogRecord> decode_summary(const log_format::Summary& message) {
 
 } // namespace
 
+void encode_config(const MatchConfig& config, log_format::MatchConfig& out) {
+    out.set_match(config.match);
+    out.set_mode(config.mode);
+    out.set_scene_name(config.scene_name);
+    out.set_scene_text(config.scene_text);
+    out.set_seed(config.seed);
+    out.set_tick_rate_hz(config.tick_rate_hz);
+    out.set_players(config.players);
+    out.set_input_delay_ticks(config.input_delay_ticks);
+    out.set_hash_interval_ticks(config.hash_interval_ticks);
+    out.set_ticks(config.ticks);
+}
+
+MatchConfig decode_config(const log_format::MatchConfig& message) {
+    MatchConfig config;
+    config.match = message.match();
+    config.mode = message.mode();
+    config.scene_name = message.scene_name();
+    config.scene_text = message.scene_text();
+    config.seed = message.seed();
+    config.tick_rate_hz = message.tick_rate_hz();
+    config.players = message.players();
+    config.input_delay_ticks = message.input_delay_ticks();
+    config.hash_interval_ticks = message.hash_interval_ticks();
+    config.ticks = message.ticks();
+    return config;
+}
+
 std::string encode_header(const LogHeader& header) {
     log_format::Record message;
     log_format::Header& out = *message.mutable_header();
@@ -208,14 +207,8 @@ Result<LogHeader> decode_header(std::string_view payload) {
                      " is not known here (up to " + std::to_string(kLogFormatVersion) +
                      "); read it with a newer lockwind"};
     }
-    const MatchConfig& config = header.config;
-    if (config.players < 1 || config.players > kPlayersMax) {
-        return Error{"header: players is " + std::to_string(config.players) + ", not 1 to " +
-                     std::to_string(kPlayersMax)};
-    }
-    if (config.tick_rate_hz < 1 || config.tick_rate_hz > kTickRateHzMax) {
-        return Error{"header: tick_rate_hz is " + std::to_string(config.tick_rate_hz) +
-                     ", not 1 to " + std::to_string(kTickRateHzMax)};
+    if (Status status = check(header.config); !status) {
+        return Error{"header: " + status.error().message};
     }
     if (header.input_size_bytes < 1 || header.input_size_bytes > kInputSizeBytesMax) {
         return Error{"header: input_size_bytes is " + std::to_string(header.input_size_bytes) +

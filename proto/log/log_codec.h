@@ -10,7 +10,15 @@
 
 namespace lockwind {
 
+namespace log_format {
+class MatchConfig;
+}
+
 /// Payloads of log records. The only code of the layer that sees log.pb.h, with log_export.
+
+void encode_config(const MatchConfig& config, log_format::MatchConfig& out);
+/// Checks nothing: see check(MatchConfig).
+MatchConfig decode_config(const log_format::MatchConfig& message);
 
 std::string encode_header(const LogHeader& header);
 /// An Error says which rule the payload breaks.

@@ -22,7 +22,7 @@ enum class FileKind : std::uint8_t { log = 0, trace = 1, bundle = 2, snapshot = 
 inline constexpr std::size_t kMagicSizeBytes = 8;
 inline constexpr std::size_t kRecordOverheadBytes = 12;
 /// Largest payload; a larger size in a file is damage.
-inline constexpr std::size_t kRecordPayloadBytesMax = 80U << 20U;
+inline constexpr std::size_t kRecordPayloadBytesMax = 128U << 20U;
 
 std::string_view to_text(FileKind kind);
 /// The kind whose magic `bytes` begin with.
