@@ -6,12 +6,6 @@
 #include <compare>
 #include <cstdint>
 
-#if defined(__SIZEOF_INT128__) && !defined(LOCKWIND_NO_INT128)
-#define LOCKWIND_HAS_INT128 1
-#else
-#define LOCKWIND_HAS_INT128 0
-#endif
-
 namespace lockwind::inline LOCKWIND_ARITHMETIC {
 
 /// An unsigned 128-bit integer, as two limbs on every machine.

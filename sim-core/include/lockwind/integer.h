@@ -64,7 +64,7 @@ constexpr Division divide_portable(const UInt128& numerator, std::uint64_t divis
 
 /// floor(numerator / divisor); needs numerator.high < divisor, so that the quotient has 64 bits.
 constexpr Division divide(const UInt128& numerator, std::uint64_t divisor) {
-#if defined(__x86_64__) && LOCKWIND_HAS_INT128
+#if LOCKWIND_HAS_X86_64
     if (!std::is_constant_evaluated()) {
         std::uint64_t quotient = 0;
         std::uint64_t remainder = 0;
@@ -84,13 +84,11 @@ constexpr UInt128 divide_wide(const UInt128& numerator, std::uint64_t divisor) {
     return {high, divide({numerator.high % divisor, numerator.low}, divisor).quotient};
 }
 
-/// floor(sqrt(value)), exact.
-constexpr std::uint64_t floor_sqrt(std::uint64_t value) {
-    if (value == 0) {
-        return 0;
-    }
-    // Four Newton steps from a 2-bit seed, each dividing by the root so far (the method of
-    // CPython's math.isqrt); the last may be one too large.
+namespace detail {
+
+/// sqrt(value) within 2: four Newton steps from a 2-bit seed, each dividing by the root so far (the
+/// method of CPython's math.isqrt).
+constexpr std::uint64_t root_seed(std::uint64_t value) {
     const int shift = std::countl_zero(value) & ~1;
     const std::uint64_t n = value << shift;
     std::uint64_t root = 1 + (n >> 62U);
@@ -98,10 +96,39 @@ constexpr std::uint64_t floor_sqrt(std::uint64_t value) {
     root = (root << 3U) + (n >> 53U) / root;
     root = (root << 7U) + (n >> 41U) / root;
     root = (root << 15U) + (n >> 17U) / root;
-    if (root > 0xffffffffU || root * root > n) {
+    return root >> (shift / 2);
+}
+
+/// The exact root from a near one: whatever the seed, the result is the same.
+constexpr std::uint64_t exact_root(std::uint64_t value, std::uint64_t seed) {
+    std::uint64_t root = seed < 0xffffffffU ? seed : 0xffffffffU;
+    while (root * root > value) {
         --root;
     }
-    return root >> (shift / 2);
+    while (value - root * root > 2 * root) {
+        ++root;
+    }
+    return root;
+}
+
+} // namespace detail
+
+constexpr std::uint64_t floor_sqrt_portable(std::uint64_t value) {
+    return value == 0 ? 0 : detail::exact_root(value, detail::root_seed(value));
+}
+
+/// floor(sqrt(value)), exact.
+constexpr std::uint64_t floor_sqrt(std::uint64_t value) {
+#if LOCKWIND_HAS_X86_64
+    if (!std::is_constant_evaluated()) {
+        // The instruction itself: a call of sqrt would bring in libm. Three times the portable
+        // speed.
+        auto seed = static_cast<double>(value); // float seed: corrected exactly below
+        __asm__("sqrtsd %0, %0" : "+x"(seed));
+        return detail::exact_root(value, static_cast<std::uint64_t>(seed));
+    }
+#endif
+    return floor_sqrt_portable(value);
 }
 
 /// floor(sqrt(value)), exact. Karatsuba square root (Zimmermann 1999): the root of the high half
@@ -119,12 +146,10 @@ constexpr std::uint64_t floor_sqrt128(const UInt128& value) {
     const std::uint64_t half = (rest << 31U) + (digit >> 1U);
     const std::uint64_t quotient = half / high;
     const std::uint64_t left = ((half % high) << 1U) + (digit & 1U);
-    std::uint64_t root = (high << 32U) + quotient;
     const UInt128 remainder{left >> 32U, (left << 32U) | (n.low & 0xffffffffU)};
-    if (remainder < multiply_wide(quotient, quotient)) {
-        --root;
-    }
-    return root >> (shift / 2);
+    // Branch-free, for the sign is a coin toss. The sum may pass 2^64 and come back.
+    const std::uint64_t excess = (remainder - multiply_wide(quotient, quotient)).high >> 63U;
+    return ((high << 32U) + quotient - excess) >> (shift / 2);
 }
 
 /// a * numerator / denominator, truncated towards zero, from the exact 128-bit product. Saturates

@@ -7,14 +7,35 @@
 #include <limits>
 #include <type_traits>
 
-// The arithmetic of a build is part of its types' names, so that objects of a CHECKED and of a
-// wrapping build never link into one program by mistake, and a test may compile both.
-#if defined(LOCKWIND_CHECKED) && LOCKWIND_CHECKED
-#define LOCKWIND_ARITHMETIC checked
-#define LOCKWIND_ARITHMETIC_CHECKED true
+// LOCKWIND_NO_INT128 chooses the portable path everywhere: two limbs, no instructions of one
+// machine.
+#if defined(__SIZEOF_INT128__) && !defined(LOCKWIND_NO_INT128)
+#define LOCKWIND_HAS_INT128 1
 #else
-#define LOCKWIND_ARITHMETIC wrapping
+#define LOCKWIND_HAS_INT128 0
+#endif
+#if defined(__x86_64__) && LOCKWIND_HAS_INT128
+#define LOCKWIND_HAS_X86_64 1
+#else
+#define LOCKWIND_HAS_X86_64 0
+#endif
+
+// The arithmetic of a build is part of its types' names: objects of a CHECKED and of a wrapping
+// build never link into one program by mistake, and one test program may compare all four.
+#if defined(LOCKWIND_CHECKED) && LOCKWIND_CHECKED
+#define LOCKWIND_ARITHMETIC_CHECKED true
+#if LOCKWIND_HAS_INT128
+#define LOCKWIND_ARITHMETIC checked
+#else
+#define LOCKWIND_ARITHMETIC checked_portable
+#endif
+#else
 #define LOCKWIND_ARITHMETIC_CHECKED false
+#if LOCKWIND_HAS_INT128
+#define LOCKWIND_ARITHMETIC wrapping
+#else
+#define LOCKWIND_ARITHMETIC wrapping_portable
+#endif
 #endif
 
 namespace lockwind::inline LOCKWIND_ARITHMETIC {

@@ -4,6 +4,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 namespace lockwind::inline LOCKWIND_ARITHMETIC {
@@ -72,6 +73,26 @@ constexpr To saturate_to(Wide<FractionBits, Storage> wide) {
     static_assert(FractionBits >= To::kFraction);
     return To::from_raw(
         raw_saturate<typename To::raw_type>(round_shift(wide.raw(), FractionBits - To::kFraction)));
+}
+
+/// a / b in the format To, truncated towards zero from the exact quotient; saturates like Fixed's.
+/// Reciprocals of masses, and every ratio of two formats: divide last.
+template <class To, class RawA, int FractionA, class RawB, int FractionB>
+constexpr To divide_to(Fixed<RawA, FractionA> a, Fixed<RawB, FractionB> b) {
+    using Raw = typename To::raw_type;
+    constexpr int kShift = To::kFraction + FractionB - FractionA;
+    static_assert(kShift >= 0 && kShift <= 64);
+    constexpr auto kHigh = static_cast<std::uint64_t>(std::numeric_limits<Raw>::max());
+    const bool negative = (a.raw() < 0) != (b.raw() < 0);
+    const std::uint64_t limit = negative ? kHigh + 1 : kHigh;
+    const UInt128 numerator = UInt128{0, raw_magnitude(a.raw())} << kShift;
+    const std::uint64_t divisor = raw_magnitude(b.raw());
+    std::uint64_t magnitude = a.raw() == 0 ? 0 : limit;
+    if (numerator.high < divisor) {
+        magnitude = divide(numerator, divisor).quotient;
+    }
+    const std::uint64_t result = magnitude < limit ? magnitude : limit;
+    return To::from_raw(static_cast<Raw>(negative ? std::uint64_t{0} - result : result));
 }
 
 /// `value` in another format: exact where that has as many fraction bits, else rounded half up.
