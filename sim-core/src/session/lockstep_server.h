@@ -4,6 +4,7 @@
 #include "session/match_config.h"
 #include "session/messages.h"
 #include "session/request.h"
+#include "session/roster.h"
 #include "session/violation.h"
 
 #include "lockwind/simulation.h"
@@ -48,15 +49,6 @@ struct LockstepServerSettings {
     std::uint32_t confirmation_size_bytes = 1200; // to all: one datagram
     std::uint32_t catch_up_size_bytes = 50'000;   // to one that is far behind
     std::size_t report_size_bytes_max = kBlobSizeBytesMax;
-};
-
-enum class SlotState : std::uint8_t {
-    empty = 0,
-    joining = 1,     // has its Welcome, builds or loads the world
-    catching_up = 2, // has the world; its inputs count from the first tick they are in time for
-    playing = 3,     // every tick waits for its input
-    dropped = 4,     // kept for its token
-    left = 5,        // free for anybody
 };
 
 enum class MatchPhase : std::uint8_t {

@@ -29,8 +29,7 @@ HashTreeDifference first_difference(const HashTree& a, const HashTree& b) {
 }
 
 SyncTestSession::SyncTestSession(Simulation& simulation, std::uint32_t check_distance_ticks)
-    : simulation_(simulation), check_distance_ticks_(check_distance_ticks),
-      states_(std::size_t{check_distance_ticks} + 1) {
+    : simulation_(simulation), states_(std::size_t{check_distance_ticks} + 1) {
     LOCKWIND_ASSERT(check_distance_ticks >= 1);
     remember({});
 }

@@ -57,7 +57,6 @@ private:
     void compare(const Step& step, Tick rolled_back_to);
 
     Simulation& simulation_;
-    std::uint32_t check_distance_ticks_;
     StateHistory states_;
     std::vector<Step> steps_; // the first run, oldest first: one per state in states_
     std::optional<SyncMismatch> mismatch_;
