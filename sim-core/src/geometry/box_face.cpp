@@ -212,6 +212,21 @@ void reduce(Polygon& polygon, FaceContact& out) {
     }
 }
 
+/// Drops corners above `limit`, in place. Returns the lowest separation of all.
+std::int32_t drop_far_corners(Polygon& polygon, std::int64_t limit) {
+    std::int64_t lowest = polygon.corners[0].separation;
+    int kept = 0;
+    for (int index = 0; index < polygon.count; ++index) {
+        const FacePoint corner = polygon.corners[index];
+        lowest = corner.separation < lowest ? corner.separation : lowest;
+        if (corner.separation <= limit) {
+            polygon.corners[kept++] = corner;
+        }
+    }
+    polygon.count = kept;
+    return raw_saturate<std::int32_t>(lowest);
+}
+
 } // namespace
 
 void clip_to_reference_face(const IncidentBox& box, int axis, FaceContact& out) {
@@ -234,13 +249,8 @@ void clip_to_reference_face(const IncidentBox& box, int axis, FaceContact& out) 
     if (polygon->count == 0) {
         return;
     }
-    std::int64_t lowest = polygon->corners[0].separation;
-    for (int index = 1; index < polygon->count; ++index) {
-        const std::int64_t separation = polygon->corners[index].separation;
-        lowest = separation < lowest ? separation : lowest;
-    }
-    out.min_separation = raw_saturate<std::int32_t>(lowest);
-    if (lowest > kSpeculativeMargin) {
+    out.min_separation = drop_far_corners(*polygon, box.companion_separation);
+    if (out.min_separation > kSpeculativeMargin) {
         return;
     }
     if (polygon->count > static_cast<int>(kManifoldPointsMax)) {

@@ -10,8 +10,9 @@ namespace lockwind {
 struct IncidentBox {
     const std::int32_t* reference_half_extents; // Q9.22 m
     const std::int32_t* half_extents;
-    std::int32_t axes[9];   // columns: the incident box's axes, Q2.30
-    std::int32_t centre[3]; // Q9.22
+    std::int32_t axes[9];              // columns: the incident box's axes, Q2.30
+    std::int32_t centre[3];            // Q9.22
+    std::int32_t companion_separation; // Q9.22, see pair_kernels.h
 };
 
 /// A corner of the incident face's part above the reference face. Its feature is the pair of edges
@@ -32,8 +33,7 @@ struct FaceContact {
 };
 
 /// Clips the incident face against the sides of the reference box's face on `axis`. Leaves count 0
-/// where nothing of it is within kSpeculativeMargin. Points of that face that are farther come
-/// along, so that a recycled manifold still holds when the box rocks.
+/// where nothing of it is within kSpeculativeMargin.
 void clip_to_reference_face(const IncidentBox& box, int axis, FaceContact& out);
 
 } // namespace lockwind

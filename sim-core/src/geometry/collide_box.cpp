@@ -119,6 +119,7 @@ bool parallel_edges(const Boxes& boxes, int edges) {
 /// Face contact with the face that `axis` (1 .. 6) names.
 void clip_face(const Boxes& boxes, std::uint32_t axis, FaceContact& face) {
     IncidentBox incident{};
+    incident.companion_separation = companion_separation(boxes.a, boxes.b);
     if (axis < kFirstFaceB) {
         incident.reference_half_extents = boxes.a.size;
         incident.half_extents = boxes.b.size;

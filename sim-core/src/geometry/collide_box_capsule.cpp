@@ -157,6 +157,8 @@ public:
         ++out.point_count;
     }
 
+    std::int32_t companion_separation_max() const { return companion_separation(box_, capsule_); }
+
 private:
     const ShapeInstance& box_;
     const ShapeInstance& capsule_;
@@ -189,7 +191,12 @@ bool touch_face(const Contact& contact,
     std::int32_t normal[3] = {0, 0, 0};
     normal[face] = positive ? kUnitOne : -kUnitOne;
     const auto tag = kFaceFeature + static_cast<std::uint32_t>(face) * 4 + (positive ? 2U : 0U);
-    for (int end = 0; end < (span.high - std::int64_t{span.low} > kLinearSlop ? 2 : 1); ++end) {
+    const bool single = span.high - std::int64_t{span.low} <= kLinearSlop;
+    for (int end = 0; end < 2; ++end) {
+        if (separations[end] > contact.companion_separation_max() ||
+            (single && separations[end] != nearer)) {
+            continue;
+        }
         std::int32_t middle[3];
         for (int axis = 0; axis < 3; ++axis) {
             middle[axis] = static_cast<std::int32_t>(segment.at(axis, ends[end]));

@@ -47,6 +47,25 @@ void collide_plane_box(const ShapeInstance& plane,
                        const std::int32_t delta[3],
                        ManifoldGeometry& out);
 
+/// Half the way across of a box or capsule along its longest axis.
+inline std::int32_t reach_of(const ShapeInstance& shape) {
+    const std::int32_t* size = shape.size;
+    if (shape.type == ShapeType::capsule) {
+        return size[0] + size[1];
+    }
+    const std::int32_t longer = size[0] > size[1] ? size[0] : size[1];
+    return longer > size[2] ? longer : size[2];
+}
+
+/// A face that touches brings its other points along up to this separation, so that a recycled
+/// manifold still holds when the body rocks. Farther ones would only stretch the solver's arms: a
+/// mid-surface point stays within 1.25 bounding radii (and half the margin) of both centres.
+inline std::int32_t companion_separation(const ShapeInstance& a, const ShapeInstance& b) {
+    const std::int32_t reach_a = reach_of(a);
+    const std::int32_t reach_b = reach_of(b);
+    return kSpeculativeMargin + ((reach_a < reach_b ? reach_a : reach_b) >> 1);
+}
+
 /// World direction of the body's axis `column`.
 inline void axis_of(const ShapeInstance& shape, int column, std::int32_t axis[3]) {
     for (int row = 0; row < 3; ++row) {

@@ -1,0 +1,413 @@
+#include "dynamics/make_body.h"
+
+#include "geometry/bounds.h"
+#include "geometry/fixed_geometry.h"
+#include "geometry/mass.h"
+
+#include "lockwind/integer.h"
+#include "lockwind/wide.h"
+
+#include <algorithm>
+#include <bit>
+#include <optional>
+#include <string>
+
+namespace lockwind {
+
+namespace {
+
+using GyrationRadius = Length;                   // Q9.22
+using InverseGyration = Fixed<std::int32_t, 24>; // Q7.24
+using InverseInertia = Fixed<std::int32_t, 26>;  // Q5.26
+
+/// A fixed body's surface is at most this far from its origin, m: with kMovingRadiusMax and the fat
+/// bounds' 1.1 m it stays within Q9.22.
+constexpr Real kFixedRadiusMax = 434;
+constexpr Real kDensityMax = 1000000; // kg/m^3
+/// The gyration radius is no smaller, so that its inverse fits Q7.24: 1/127 m, rounded up. It only
+/// scales the stored angular velocity and inverse inertia, so that a smaller body is as exact.
+constexpr std::int32_t kGyrationRadiusMin = 33027;
+/// Largest arm / gyration radius, and arm x gyration radius / k, that a solver row may meet. Its
+/// coefficients are below 8 (Q3.28).
+constexpr std::int64_t kLeverageMax = 62; // in eighths: 7.75
+
+/// Decimal text with up to six places, truncated.
+std::string text_of(Real value) {
+    const std::uint64_t raw = raw_magnitude(value.raw());
+    std::string digits = std::to_string((raw & 0xffffffffU) * 1000000 >> 32U);
+    digits.insert(0, 6 - digits.size(), '0');
+    while (digits.size() > 1 && digits.back() == '0') {
+        digits.pop_back();
+    }
+    return (value < 0 ? "-" : "") + std::to_string(raw >> 32U) + "." + digits;
+}
+
+class Checker {
+public:
+    explicit Checker(BodyId id) : id_(id) {}
+
+    bool failed() const { return error_.has_value(); }
+    const Error& error() const { return *error_; }
+
+    /// The first complaint stays.
+    void fail(const std::string& field, const std::string& what) {
+        if (!error_) {
+            error_ = Error{"body " + std::to_string(id_) + ": " + field + " " + what};
+        }
+    }
+    void require(bool condition, const char* field, const char* what) {
+        if (!condition) {
+            fail(field, what);
+        }
+    }
+    void range(const char* field, Real value, Real low, Real high, const char* unit) {
+        if (value < low || value > high) {
+            fail(field,
+                 "is " + text_of(value) + "; it must be within " + text_of(low) + " .. " +
+                     text_of(high) + unit);
+        }
+    }
+    void vector_range(const char* field, const Vec3& value, Real limit, const char* unit) {
+        const std::string name = field;
+        range((name + ".x").c_str(), value.x, -limit, limit, unit);
+        range((name + ".y").c_str(), value.y, -limit, limit, unit);
+        range((name + ".z").c_str(), value.z, -limit, limit, unit);
+    }
+    void speed(const char* field, const Vec3& value, Real limit, const char* unit) {
+        vector_range(field, value, limit, unit);
+        if (failed()) {
+            return;
+        }
+        const auto square =
+            product(value.x, value.x) + product(value.y, value.y) + product(value.z, value.z);
+        if (square > product(limit, limit)) {
+            fail(field, "is longer than " + text_of(limit) + unit);
+        }
+    }
+
+private:
+    BodyId id_;
+    std::optional<Error> error_;
+};
+
+void check_shape(const ShapeDefinition& shape, BodyMode mode, Checker& checker) {
+    // Compared as it will be stored, so that a stored size is always a valid one.
+    const auto size = [&](const char* field, Real value) {
+        const auto stored = convert_saturated<Length>(value);
+        if (stored < convert<Length>(kShapeSizeMin) || stored > convert<Length>(kShapeSizeMax)) {
+            checker.range(field, value, kShapeSizeMin, kShapeSizeMax, " m");
+        }
+    };
+    switch (shape.type) {
+    case ShapeType::sphere:
+        size("shape.radius", shape.radius);
+        return;
+    case ShapeType::capsule:
+        size("shape.radius", shape.radius);
+        size("shape.half_height", shape.half_height);
+        return;
+    case ShapeType::box:
+        size("shape.half_extents.x", shape.half_extents.x);
+        size("shape.half_extents.y", shape.half_extents.y);
+        size("shape.half_extents.z", shape.half_extents.z);
+        return;
+    case ShapeType::plane:
+        checker.require(
+            mode == BodyMode::fixed, "shape.type", "is a plane; only a fixed body may be one");
+        return;
+    }
+    checker.fail("shape.type", "is unknown");
+}
+
+void check_motion(const BodyDefinition& definition,
+                  const WorldSettings& settings,
+                  Checker& checker) {
+    const RealQuat& q = definition.orientation;
+    checker.vector_range("position", definition.position, kBodyPositionMax, " m");
+    checker.require(
+        q.x != 0 || q.y != 0 || q.z != 0 || q.w != 0, "orientation", "is 0; it must be a rotation");
+    if (definition.mode == BodyMode::fixed) {
+        checker.require(definition.linear_velocity == Vec3{},
+                        "linear_velocity",
+                        "is not 0; a fixed body does not move");
+        checker.require(definition.angular_velocity == Vec3{},
+                        "angular_velocity",
+                        "is not 0; a fixed body does not turn");
+        return;
+    }
+    checker.speed("linear_velocity",
+                  definition.linear_velocity,
+                  std::min(settings.linear_speed_max, kBodySpeedMax),
+                  " m/s");
+    checker.speed(
+        "angular_velocity", definition.angular_velocity, settings.angular_speed_max, " rad/s");
+}
+
+void check_definition(const BodyDefinition& definition,
+                      const WorldSettings& settings,
+                      Checker& checker) {
+    constexpr BodyId kSceneIdMax = 0xffffffffU;
+    checker.require(definition.id >= 1 && definition.id <= kSceneIdMax,
+                    "id",
+                    "is out of range; it must be within 1 .. 4294967295");
+    checker.require(definition.mode == BodyMode::fixed || definition.mode == BodyMode::kinematic ||
+                        definition.mode == BodyMode::dynamic,
+                    "mode",
+                    "is unknown");
+    check_shape(definition.shape, definition.mode, checker);
+    check_motion(definition, settings, checker);
+    checker.range("density", definition.density, 0, kDensityMax, " kg/m^3");
+    checker.range("mass", definition.mass, 0, kBodyMassMax, " kg");
+    checker.range("friction", definition.friction, 0, kFrictionMax, "");
+    checker.range("restitution", definition.restitution, 0, kRestitutionMax, "");
+}
+
+void fill_size(const ShapeDefinition& shape, BodyProperties& properties) {
+    const auto set = [&](int index, Real value) {
+        properties.size[index] = convert<Length>(value).raw();
+    };
+    switch (shape.type) {
+    case ShapeType::sphere:
+        set(0, shape.radius);
+        break;
+    case ShapeType::capsule:
+        set(0, shape.radius);
+        set(1, shape.half_height);
+        break;
+    case ShapeType::box:
+        set(0, shape.half_extents.x);
+        set(1, shape.half_extents.y);
+        set(2, shape.half_extents.z);
+        break;
+    case ShapeType::plane:
+        break;
+    }
+    properties.bounding_radius = bounding_radius(shape.type, properties.size);
+}
+
+void set_gyration_radius(std::int64_t radius, BodyProperties& properties) {
+    properties.gyration_radius =
+        static_cast<std::int32_t>(std::max<std::int64_t>(radius, kGyrationRadiusMin));
+    const Length length = Length::from_raw(properties.gyration_radius);
+    // 1 / Q22 in Q24, to the nearest.
+    constexpr std::int64_t kOne = std::int64_t{1}
+                                  << (Length::kFraction + InverseGyration::kFraction);
+    properties.inverse_gyration_radius =
+        static_cast<std::int32_t>((kOne + length.raw() / 2) / length.raw());
+}
+
+/// Distance from the local axis to the farthest surface point.
+std::int64_t arm_about(const ShapeDefinition& shape, const BodyProperties& properties, int axis) {
+    const std::int32_t* size = properties.size;
+    if (shape.type == ShapeType::box) {
+        const std::int32_t across[3] = {
+            axis == 0 ? 0 : size[0], axis == 1 ? 0 : size[1], axis == 2 ? 0 : size[2]};
+        return bounding_radius(ShapeType::box, across);
+    }
+    return shape.type == ShapeType::capsule && axis == 1 ? size[0] : properties.bounding_radius;
+}
+
+/// rho = (k_min k_max)^(1/4), rho^2 / k_i, with k = I / m.
+void fill_inertia(const ShapeDefinition& shape, BodyProperties& properties, Checker& checker) {
+    const UnitInertia inertia = unit_inertia(shape.type, properties.size);
+    const auto moment = [&](int axis) {
+        return static_cast<std::uint64_t>(inertia.moment[axis].raw());
+    };
+    const std::uint64_t least = std::min({moment(0), moment(1), moment(2)});
+    const std::uint64_t most = std::max({moment(0), moment(1), moment(2)});
+    set_gyration_radius(
+        static_cast<std::int64_t>(floor_sqrt(floor_sqrt128(multiply_wide(least, most)))),
+        properties);
+    const std::int64_t rho = properties.gyration_radius;
+    constexpr std::int64_t kTwice = std::int64_t{2} << InverseInertia::kFraction;
+    // Contact points lie up to a quarter of the radius and half the margin off the surface.
+    const auto is_bearable = [&](std::int64_t arm, std::int64_t numerator, std::int64_t divisor) {
+        const std::int64_t longest = arm + (arm >> 2) + (kSpeculativeMargin >> 1);
+        return multiply_divide(8 * longest, numerator, divisor) < kLeverageMax;
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto k = static_cast<std::int64_t>(moment(axis));
+        const std::int64_t ratio = (multiply_divide(rho * rho, kTwice, k) + 1) >> 1;
+        const std::int64_t arm = arm_about(shape, properties, axis);
+        if (ratio > std::int64_t{InverseInertia::highest().raw()} || !is_bearable(arm, 1, rho) ||
+            !is_bearable(arm, rho, k)) {
+            checker.fail("shape", "is too slender; it may be about 15 times as long as thick");
+            return;
+        }
+        properties.inverse_inertia[axis] = static_cast<std::int32_t>(ratio);
+    }
+}
+
+void fill_mass(const BodyDefinition& definition, BodyProperties& properties, Checker& checker) {
+    const bool by_density = definition.mass == 0;
+    const Real mass = by_density
+                          ? mass_of(definition.shape.type, properties.size, definition.density)
+                          : definition.mass;
+    if (mass < kBodyMassMin || mass > kBodyMassMax) {
+        checker.fail(by_density ? "density" : "mass",
+                     "gives " + text_of(mass) + " kg; a mass must be within " +
+                         text_of(kBodyMassMin) + " .. " + text_of(kBodyMassMax) + " kg");
+        return;
+    }
+    // floor(2^40 / m), m in Q32.
+    const UInt128 one = UInt128{0, 1} << (InverseMass::kFraction + Real::kFraction);
+    properties.inverse_mass =
+        static_cast<std::int64_t>(divide_wide(one, static_cast<std::uint64_t>(mass.raw())).low);
+}
+
+void fill_build(const BodyDefinition& definition, BodyProperties& properties, Checker& checker) {
+    const auto radius = convert<Real>(Length::from_raw(properties.bounding_radius));
+    const bool fixed = definition.mode == BodyMode::fixed;
+    checker.range("shape's bounding radius",
+                  radius,
+                  0,
+                  fixed ? kFixedRadiusMax : kMovingRadiusMax,
+                  fixed ? " m for a fixed body" : " m for a body that moves");
+    if (checker.failed() || fixed) {
+        return;
+    }
+    if (definition.mode == BodyMode::kinematic) {
+        // No inertia: the radius only scales the angular velocity, and keeps the solver's arms
+        // short.
+        set_gyration_radius(properties.bounding_radius, properties);
+        return;
+    }
+    fill_inertia(definition.shape, properties, checker);
+    fill_mass(definition, properties, checker);
+}
+
+void fill_orientation(const RealQuat& orientation, BodyMotion& motion) {
+    const std::int64_t raw[4] = {
+        orientation.x.raw(), orientation.y.raw(), orientation.z.raw(), orientation.w.raw()};
+    std::uint64_t largest = 0;
+    for (const std::int64_t component : raw) {
+        largest = std::max(largest, raw_magnitude(component));
+    }
+    // Scaled to 62 bits, so that a short quaternion loses no digits; four squares fit 126 bits.
+    const int shift = std::countl_zero(largest) - 2;
+    std::int64_t scaled[4];
+    UInt128 square{};
+    for (int index = 0; index < 4; ++index) {
+        scaled[index] = shift < 0 ? raw[index] >> -shift : raw[index] * (std::int64_t{1} << shift);
+        const std::uint64_t size = raw_magnitude(scaled[index]);
+        square = square + multiply_wide(size, size);
+    }
+    const auto length = static_cast<std::int64_t>(floor_sqrt128(square));
+    constexpr std::int64_t kTwice = std::int64_t{2} << Unit::kFraction;
+    for (int index = 0; index < 4; ++index) {
+        motion.orientation[index] =
+            static_cast<std::int32_t>((multiply_divide(scaled[index], kTwice, length) + 1) >> 1);
+    }
+}
+
+void fill_velocities(const BodyDefinition& definition,
+                     const BodyProperties& properties,
+                     BodyMotion& motion,
+                     Checker& checker) {
+    const Vec3& linear = definition.linear_velocity;
+    motion.linear_velocity[0] = convert<Velocity>(linear.x).raw();
+    motion.linear_velocity[1] = convert<Velocity>(linear.y).raw();
+    motion.linear_velocity[2] = convert<Velocity>(linear.z).raw();
+    const Vec3& angular = definition.angular_velocity;
+    const auto radius = GyrationRadius::from_raw(properties.gyration_radius);
+    const Real scaled[3] = {saturate_to<Real>(product(angular.x, radius)),
+                            saturate_to<Real>(product(angular.y, radius)),
+                            saturate_to<Real>(product(angular.z, radius))};
+    for (int axis = 0; axis < 3; ++axis) {
+        if (scaled[axis] > kBodySpeedMax || scaled[axis] < -kBodySpeedMax) {
+            checker.fail("angular_velocity",
+                         "times the gyration radius (" + text_of(convert<Real>(radius)) +
+                             " m) is above " + text_of(kBodySpeedMax) + " m/s");
+            return;
+        }
+        motion.angular_velocity[axis] = convert<Velocity>(scaled[axis]).raw();
+    }
+}
+
+} // namespace
+
+Status make_body(const BodyDefinition& definition,
+                 const WorldSettings& settings,
+                 BodyMotion& motion,
+                 BodyProperties& properties) {
+    Checker checker(definition.id);
+    check_definition(definition, settings, checker);
+    if (checker.failed()) {
+        return checker.error();
+    }
+    BodyMotion new_motion{};
+    BodyProperties new_properties{};
+    new_properties.mode = static_cast<std::uint8_t>(definition.mode);
+    new_properties.shape = static_cast<std::uint8_t>(definition.shape.type);
+    new_properties.friction = convert<Coefficient>(definition.friction).raw();
+    new_properties.restitution = convert<Coefficient>(definition.restitution).raw();
+    fill_size(definition.shape, new_properties);
+    fill_build(definition, new_properties, checker);
+
+    new_motion.id = definition.id;
+    new_motion.position[0] = definition.position.x.raw();
+    new_motion.position[1] = definition.position.y.raw();
+    new_motion.position[2] = definition.position.z.raw();
+    fill_orientation(definition.orientation, new_motion);
+    fill_velocities(definition, new_properties, new_motion, checker);
+    for (int axis = 0; axis < 3; ++axis) {
+        new_motion.fat_bounds[axis] = 1;
+    }
+    if (checker.failed()) {
+        return checker.error();
+    }
+    motion = new_motion;
+    properties = new_properties;
+    return Success{};
+}
+
+BodyReading read_body(const BodyMotion& motion, const BodyProperties& properties) {
+    BodyReading reading{};
+    reading.mode = static_cast<BodyMode>(properties.mode);
+    reading.shape.type = static_cast<ShapeType>(properties.shape);
+    const auto size = [&](int index) {
+        return convert<Real>(Length::from_raw(properties.size[index]));
+    };
+    if (reading.shape.type == ShapeType::box) {
+        reading.shape.half_extents = {size(0), size(1), size(2)};
+    } else if (reading.shape.type != ShapeType::plane) {
+        reading.shape.radius = size(0);
+    }
+    if (reading.shape.type == ShapeType::capsule) {
+        reading.shape.half_height = size(1);
+    }
+    const auto unit = [&](int index) {
+        return convert<Real>(Unit::from_raw(motion.orientation[index]));
+    };
+    reading.orientation = {unit(0), unit(1), unit(2), unit(3)};
+    reading.position = {Real::from_raw(motion.position[0]),
+                        Real::from_raw(motion.position[1]),
+                        Real::from_raw(motion.position[2])};
+    const auto linear = [&](int index) {
+        return convert<Real>(Velocity::from_raw(motion.linear_velocity[index]));
+    };
+    reading.linear_velocity = {linear(0), linear(1), linear(2)};
+    const auto radius = convert<Real>(GyrationRadius::from_raw(properties.gyration_radius));
+    const auto angular = [&](int index) {
+        return convert<Real>(Velocity::from_raw(motion.angular_velocity[index])) / radius;
+    };
+    if (radius > 0) {
+        reading.angular_velocity = {angular(0), angular(1), angular(2)};
+    }
+    if (properties.inverse_mass > 0) {
+        const UInt128 one = UInt128{0, 1} << (InverseMass::kFraction + Real::kFraction);
+        const UInt128 mass = divide_wide(one, static_cast<std::uint64_t>(properties.inverse_mass));
+        reading.mass = mass.high == 0 && (mass.low >> 63U) == 0
+                           ? Real::from_raw(static_cast<std::int64_t>(mass.low))
+                           : Real::highest();
+    }
+    return reading;
+}
+
+ShapeInstance shape_of(const BodyProperties& properties, const std::int32_t* rotation) {
+    return {static_cast<ShapeType>(properties.shape),
+            {properties.size[0], properties.size[1], properties.size[2]},
+            rotation};
+}
+
+} // namespace lockwind
