@@ -1,0 +1,101 @@
+#include "dynamics/block_layout.h"
+
+#include "lockwind/world_definition.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace lockwind {
+
+namespace {
+
+constexpr std::uint64_t kDynamicMask = (std::uint64_t{1} << kDynamicColours) - 1;
+constexpr auto kDynamic = static_cast<std::uint8_t>(BodyMode::dynamic);
+
+/// Damaged rows must not lead outside the tables.
+bool is_solvable(const Pair& pair, const DynamicsTables& tables) {
+    return pair.point_count != 0 && pair.point_count <= kBlockPoints && pair.row_a < pair.row_b &&
+           pair.row_b < tables.motion.count() && pair.manifold < tables.manifolds.count();
+}
+
+} // namespace
+
+Colouring::Colouring(std::uint32_t body_capacity, std::uint32_t pair_capacity)
+    : used_(body_capacity) {
+    contacts_.reserve(pair_capacity);
+}
+
+void Colouring::run(const DynamicsTables& tables) {
+    contacts_.clear();
+    std::fill(used_.begin(), used_.end(), 0U);
+    const std::uint32_t count = tables.pairs.count();
+    for (std::uint32_t index = 0; index < count; ++index) {
+        const Pair& pair = tables.pairs[index];
+        if (!is_solvable(pair, tables)) {
+            continue;
+        }
+        const bool a_moves = tables.properties[pair.row_a].mode == kDynamic;
+        const bool b_moves = tables.properties[pair.row_b].mode == kDynamic;
+        if (!a_moves && !b_moves) {
+            continue;
+        }
+        const std::uint64_t allowed = a_moves && b_moves ? kDynamicMask : ~kDynamicMask;
+        const std::uint64_t used =
+            (a_moves ? used_[pair.row_a] : 0) | (b_moves ? used_[pair.row_b] : 0);
+        const std::uint64_t free = allowed & ~used;
+        std::uint32_t colour = kColours;
+        if (free != 0) {
+            colour = static_cast<std::uint32_t>(std::countr_zero(free));
+            const std::uint64_t bit = std::uint64_t{1} << colour;
+            used_[pair.row_a] |= bit;
+            used_[pair.row_b] |= bit;
+        }
+        contacts_.push_back({index, static_cast<std::uint8_t>(colour), pair.point_count});
+    }
+}
+
+BlockLayout::BlockLayout(std::uint32_t manifold_capacity)
+    : blocks_(manifold_capacity / kBlockLanes + kColours + 1) {}
+
+void BlockLayout::run(const DynamicsTables& tables, std::span<const ColouredContact> contacts) {
+    std::uint32_t place[(kColours + 1) * kBlockPoints] = {};
+    const auto class_of = [](const ColouredContact& contact) {
+        return contact.colour * kBlockPoints + kBlockPoints - contact.point_count;
+    };
+    for (const ColouredContact& contact : contacts) {
+        ++place[class_of(contact)];
+    }
+    // Counts become places in the colour's row of lanes.
+    std::uint32_t first_block[kColours + 1] = {};
+    count_ = 0;
+    for (std::uint32_t colour = 0; colour <= kColours; ++colour) {
+        first_block[colour] = count_;
+        std::uint32_t sum = 0;
+        for (std::uint32_t points = 0; points < kBlockPoints; ++points) {
+            std::uint32_t& entry = place[colour * kBlockPoints + points];
+            sum += entry;
+            entry = sum - entry;
+        }
+        count_ += (sum + kBlockLanes - 1) / kBlockLanes;
+    }
+    overflow_first_ = first_block[kColours];
+    for (ContactBlock& block : blocks()) {
+        block.lane_count = 0;
+        block.point_count_max = 0;
+    }
+    for (const ColouredContact& contact : contacts) {
+        const Pair& pair = tables.pairs[contact.pair];
+        const std::uint32_t index = place[class_of(contact)]++;
+        const std::uint32_t lane = index % kBlockLanes;
+        ContactBlock& block = blocks_[first_block[contact.colour] + index / kBlockLanes];
+        block.row_a[lane] = pair.row_a;
+        block.row_b[lane] = pair.row_b;
+        block.pair[lane] = contact.pair;
+        block.manifold[lane] = pair.manifold;
+        block.point_count[lane] = contact.point_count;
+        block.point_count_max = std::max(block.point_count_max, std::uint32_t{contact.point_count});
+        ++block.lane_count;
+    }
+}
+
+} // namespace lockwind

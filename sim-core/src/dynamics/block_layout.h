@@ -1,0 +1,54 @@
+#pragma once
+
+#include "dynamics/contact_block.h"
+#include "dynamics/dynamics.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lockwind {
+
+/// Dynamic pairs take the first colours, contacts with a partner that does not move under forces
+/// the last, so that what bodies stand on has the last word; what finds no colour is solved one by
+/// one.
+inline constexpr std::uint32_t kDynamicColours = 48;
+inline constexpr std::uint32_t kColours = 64;
+
+/// A touching pair and its colour; kColours for the overflow.
+struct ColouredContact {
+    std::uint32_t pair;
+    std::uint8_t colour;
+    std::uint8_t point_count;
+};
+
+/// Colours touching pairs greedily in pair order, so that no two of a colour share a dynamic body.
+/// The colours of a group of bodies follow from that group alone.
+class Colouring {
+public:
+    Colouring(std::uint32_t body_capacity, std::uint32_t pair_capacity);
+    void run(const DynamicsTables& tables);
+    std::span<const ColouredContact> contacts() const { return contacts_; }
+
+private:
+    std::vector<std::uint64_t> used_; // a bit for each colour, by body
+    std::vector<ColouredContact> contacts_;
+};
+
+/// Blocks of eight contacts in solving order: by colour, then points (most first, so that lanes
+/// have equal work), then pair.
+class BlockLayout {
+public:
+    explicit BlockLayout(std::uint32_t manifold_capacity);
+    void run(const DynamicsTables& tables, std::span<const ColouredContact> contacts);
+    std::span<ContactBlock> blocks() { return {blocks_.data(), count_}; }
+    /// Blocks from this one on hold the overflow: only one lane at a time may be solved.
+    std::uint32_t overflow_first() const { return overflow_first_; }
+
+private:
+    std::vector<ContactBlock> blocks_;
+    std::uint32_t count_ = 0;
+    std::uint32_t overflow_first_ = 0;
+};
+
+} // namespace lockwind

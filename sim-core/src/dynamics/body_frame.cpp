@@ -1,0 +1,70 @@
+#include "dynamics/body_frame.h"
+
+#include "geometry/bounds.h"
+#include "geometry/collide.h"
+#include "geometry/rotation.h"
+
+#include <algorithm>
+
+namespace lockwind {
+
+namespace {
+
+bool is_current(const BodyFrame& frame, const BodyMotion& motion, const BodyProperties& body) {
+    if (frame.shape.rotation == nullptr ||
+        static_cast<std::uint8_t>(frame.shape.type) != body.shape ||
+        !std::equal(body.size, body.size + 3, frame.shape.size)) {
+        return false;
+    }
+    return frame.shape.type == ShapeType::sphere ||
+           std::equal(motion.orientation, motion.orientation + 4, frame.orientation);
+}
+
+void make_frame(BodyFrame& frame, const BodyMotion& motion, const BodyProperties& body) {
+    const bool known = body.shape <= static_cast<std::uint8_t>(ShapeType::plane);
+    frame.shape.type = known ? static_cast<ShapeType>(body.shape) : ShapeType::sphere;
+    frame.shape.rotation = frame.rotation;
+    std::copy(body.size, body.size + 3, frame.shape.size);
+    std::copy(motion.orientation, motion.orientation + 4, frame.orientation);
+    if (frame.shape.type == ShapeType::sphere) {
+        std::copy(kIdentityRotation, kIdentityRotation + 9, frame.rotation);
+    } else {
+        rotation_matrix(motion.orientation, frame.rotation);
+    }
+    if (is_bounded(frame.shape.type)) {
+        bounds_half_extents(frame.shape, frame.half_extents);
+    } else {
+        std::fill(frame.half_extents, frame.half_extents + 3, 0);
+    }
+}
+
+} // namespace
+
+BodyFrames::BodyFrames(std::uint32_t capacity) : frames_(capacity) {}
+
+void BodyFrames::refresh(const DynamicsTables& tables) {
+    const std::uint32_t count = tables.motion.count();
+    for (BodyRow row = 0; row < count; ++row) {
+        if (!is_current(frames_[row], tables.motion[row], tables.properties[row])) {
+            make_frame(frames_[row], tables.motion[row], tables.properties[row]);
+        }
+    }
+}
+
+void BodyFrames::drop() {
+    std::fill(frames_.begin(), frames_.end(), BodyFrame{});
+}
+
+void pair_delta(const BodyFrame& a,
+                const BodyFrame& b,
+                const BodyMotion& motion_a,
+                const BodyMotion& motion_b,
+                std::int32_t delta[3]) {
+    if (is_bounded(a.shape.type) && is_bounded(b.shape.type)) {
+        centre_delta(motion_a.position, motion_b.position, delta);
+    } else {
+        centre_delta_plane(a.shape, motion_a.position, b.shape, motion_b.position, delta);
+    }
+}
+
+} // namespace lockwind

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "dynamics/body.h"
+#include "dynamics/step_constants.h"
+
+#include <cstdint>
+
+namespace lockwind {
+
+/// A body's velocities summed over the substeps of a tick, Q.20 m/s; angular ones times the
+/// gyration radius.
+struct BodyTravel {
+    std::int64_t linear[3];
+    std::int64_t angular[3];
+};
+
+/// Moves and turns a body that is not fixed by what it travelled in `tick`, and renews its motion
+/// stamps. A dynamic body whose principal inertias differ turns as a free rigid body and
+/// angular_velocity changes with it (gyroscopic torque). A turn is at most 4 rad a tick about each
+/// axis.
+void move_body(const StepConstants& constants,
+               const BodyTravel& travel,
+               const BodyProperties& body,
+               std::uint32_t tick,
+               BodyMotion& motion);
+
+/// Shortens the velocities to the largest speeds that the settings allow.
+void clamp_velocities(const StepConstants& constants,
+                      const BodyProperties& body,
+                      BodyMotion& motion);
+
+} // namespace lockwind

@@ -1,0 +1,184 @@
+#include "dynamics/broad_phase.h"
+
+#include "dynamics/solver_format.h"
+#include "geometry/bounds.h"
+
+#include "lockwind/overflow.h"
+#include "lockwind/world_definition.h"
+
+#include <algorithm>
+
+namespace lockwind {
+
+namespace {
+
+constexpr std::int64_t kFatMargin = 3277;        // 50 mm, Q15.16
+constexpr std::int64_t kPredictionMax = 1 << 15; // 0.5 m, Q15.16
+constexpr std::int64_t kPredictionTicks = 3;
+
+constexpr auto kFixed = static_cast<std::uint8_t>(BodyMode::fixed);
+constexpr auto kDynamic = static_cast<std::uint8_t>(BodyMode::dynamic);
+
+Bounds stored_bounds(const BodyMotion& motion) {
+    Bounds bounds{};
+    std::copy(motion.fat_bounds, motion.fat_bounds + 3, bounds.low);
+    std::copy(motion.fat_bounds + 3, motion.fat_bounds + 6, bounds.high);
+    return bounds;
+}
+
+void store_bounds(const Bounds& bounds, BodyMotion& motion) {
+    std::copy(bounds.low, bounds.low + 3, motion.fat_bounds);
+    std::copy(bounds.high, bounds.high + 3, motion.fat_bounds + 3);
+}
+
+bool is_empty(const Bounds& bounds) {
+    return bounds.low[0] > bounds.high[0];
+}
+
+Bounds tight_bounds(const BodyFrame& frame, const BodyMotion& motion) {
+    if (!is_bounded(frame.shape.type)) {
+        return kUnbounded;
+    }
+    Bounds bounds{};
+    for (int axis = 0; axis < 3; ++axis) {
+        // Both shifts round down: one unit each makes up for it.
+        const std::int64_t centre = motion.position[axis] >> (32 - kBoundsFraction);
+        const std::int64_t extent =
+            (frame.half_extents[axis] >> (kLengthFraction - kBoundsFraction)) + 2;
+        bounds.low[axis] = raw_saturate<std::int32_t>(centre - extent);
+        bounds.high[axis] = raw_saturate<std::int32_t>(centre + extent);
+    }
+    return bounds;
+}
+
+} // namespace
+
+BroadPhase::BroadPhase(const DynamicsSettings& settings)
+    : tick_rate_(settings.tick_rate_hz), pair_capacity_(settings.pair_capacity),
+      bounds_(settings.body_capacity), is_moved_(settings.body_capacity),
+      grid_(settings.body_capacity) {
+    moved_.reserve(settings.body_capacity);
+    added_.reserve(settings.pair_capacity);
+}
+
+Bounds BroadPhase::fat_bounds(const Bounds& tight, const BodyMotion& motion, bool moves) const {
+    Bounds fat{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::int64_t speed =
+            moves ? motion.linear_velocity[axis] >> (kVelocityFraction - kBoundsFraction) : 0;
+        const std::int64_t ahead =
+            std::clamp(speed * kPredictionTicks / tick_rate_, -kPredictionMax, kPredictionMax);
+        fat.low[axis] = raw_saturate<std::int32_t>(tight.low[axis] - kFatMargin +
+                                                   std::min(ahead, std::int64_t{0}));
+        fat.high[axis] = raw_saturate<std::int32_t>(tight.high[axis] + kFatMargin +
+                                                    std::max(ahead, std::int64_t{0}));
+    }
+    return fat;
+}
+
+void BroadPhase::update_bounds(const DynamicsTables& tables, const BodyFrames& frames) {
+    moved_.clear();
+    const std::uint32_t count = tables.motion.count();
+    for (BodyRow row = 0; row < count; ++row) {
+        const BodyMotion& motion = tables.motion[row];
+        const Bounds tight = tight_bounds(frames[row], motion);
+        bounds_[row] = stored_bounds(motion);
+        is_moved_[row] = contains(bounds_[row], tight) ? 0 : 1;
+        if (is_moved_[row] == 0) {
+            continue;
+        }
+        moved_.push_back(row);
+        const bool moves = tables.properties[row].mode != kFixed;
+        bounds_[row] = tight == kUnbounded ? kUnbounded : fat_bounds(tight, motion, moves);
+    }
+}
+
+/// False where there are more than the pair table can hold.
+bool BroadPhase::find_new_pairs(const DynamicsTables& tables) {
+    added_.clear();
+    grid_.build({bounds_.data(), tables.motion.count()});
+    bool fits = true;
+    for (const BodyRow row : moved_) {
+        const bool is_dynamic = tables.properties[row].mode == kDynamic;
+        const Bounds before = stored_bounds(tables.motion[row]);
+        grid_.query(bounds_[row], [&](BodyRow other) {
+            // Two moved bodies find each other twice: the lower row's find counts.
+            if (other == row || (is_moved_[other] != 0 && other < row)) {
+                return;
+            }
+            if (!is_dynamic && tables.properties[other].mode != kDynamic) {
+                return;
+            }
+            const Bounds other_before = stored_bounds(tables.motion[other]);
+            if (!is_empty(before) && !is_empty(other_before) && overlaps(before, other_before)) {
+                return;
+            }
+            if (added_.size() == pair_capacity_) {
+                fits = false;
+                return;
+            }
+            added_.push_back({std::min(row, other), std::max(row, other)});
+        });
+    }
+    std::sort(added_.begin(), added_.end());
+    return fits;
+}
+
+bool BroadPhase::is_gone(const Pair& pair, std::uint32_t body_count) const {
+    if (pair.row_a >= body_count || pair.row_b >= body_count) {
+        return true;
+    }
+    return (is_moved_[pair.row_a] | is_moved_[pair.row_b]) != 0 &&
+           !overlaps(bounds_[pair.row_a], bounds_[pair.row_b]);
+}
+
+void BroadPhase::merge_new_pairs(const Table<Pair>& pairs, const std::vector<Key>& added) {
+    const std::uint32_t kept = pairs.count();
+    pairs.set_count(kept + static_cast<std::uint32_t>(added.size()));
+    std::uint32_t from = kept;
+    std::uint32_t to = pairs.count();
+    for (std::size_t index = added.size(); index-- > 0;) {
+        const Key& key = added[index];
+        while (from > 0 && Key{pairs[from - 1].row_a, pairs[from - 1].row_b} > key) {
+            pairs[--to] = pairs[--from];
+        }
+        pairs[--to] = Pair{key.row_a, key.row_b, kNoIndex, 0, 0, 0, {0, 0}};
+    }
+}
+
+StepFault BroadPhase::run(const DynamicsTables& tables,
+                          const BodyFrames& frames,
+                          ManifoldSlots& slots,
+                          std::vector<ContactChange>& changes) {
+    update_bounds(tables, frames);
+    if (moved_.empty()) {
+        return StepFault::none;
+    }
+    const std::uint32_t body_count = tables.motion.count();
+    const std::uint32_t pair_count = tables.pairs.count();
+    std::uint32_t gone = 0;
+    for (std::uint32_t index = 0; index < pair_count; ++index) {
+        gone += is_gone(tables.pairs[index], body_count) ? 1U : 0U;
+    }
+    if (!find_new_pairs(tables) || pair_count - gone + added_.size() > pair_capacity_) {
+        return StepFault::pairs_full;
+    }
+    for (const BodyRow row : moved_) {
+        store_bounds(bounds_[row], tables.motion[row]);
+    }
+    std::uint32_t kept = 0;
+    for (std::uint32_t index = 0; index < pair_count; ++index) {
+        const Pair pair = tables.pairs[index];
+        if (!is_gone(pair, body_count)) {
+            tables.pairs[kept++] = pair;
+        } else if (pair.point_count != 0 && pair.manifold < tables.manifolds.count()) {
+            slots.free(tables.manifolds, pair.manifold);
+            changes.push_back({pair.row_a, pair.row_b, false});
+        }
+    }
+    tables.pairs.set_count(kept);
+    merge_new_pairs(tables.pairs, added_);
+    return StepFault::none;
+}
+
+} // namespace lockwind

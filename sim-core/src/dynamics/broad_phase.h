@@ -1,0 +1,48 @@
+#pragma once
+
+#include "dynamics/body_frame.h"
+#include "dynamics/bounds_grid.h"
+#include "dynamics/dynamics.h"
+#include "dynamics/manifold_slots.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace lockwind {
+
+/// Keeps BodyMotion::fat_bounds about the bodies and the pair table equal to the set of overlapping
+/// fat bounds with at least one dynamic body.
+class BroadPhase {
+public:
+    explicit BroadPhase(const DynamicsSettings& settings);
+
+    /// Appends touching pairs that drift apart to `changes`, in pair order. On a fault no table has
+    /// changed.
+    StepFault run(const DynamicsTables& tables,
+                  const BodyFrames& frames,
+                  ManifoldSlots& slots,
+                  std::vector<ContactChange>& changes);
+
+private:
+    struct Key {
+        BodyRow row_a;
+        BodyRow row_b;
+        auto operator<=>(const Key&) const = default;
+    };
+
+    void update_bounds(const DynamicsTables& tables, const BodyFrames& frames);
+    Bounds fat_bounds(const Bounds& tight, const BodyMotion& motion, bool moves) const;
+    bool find_new_pairs(const DynamicsTables& tables);
+    bool is_gone(const Pair& pair, std::uint32_t body_count) const;
+    static void merge_new_pairs(const Table<Pair>& pairs, const std::vector<Key>& added);
+
+    std::uint32_t tick_rate_;
+    std::uint32_t pair_capacity_;
+    std::vector<Bounds> bounds_; // fat, of this tick
+    std::vector<BodyRow> moved_;
+    std::vector<std::uint8_t> is_moved_;
+    std::vector<Key> added_;
+    BoundsGrid grid_;
+};
+
+} // namespace lockwind

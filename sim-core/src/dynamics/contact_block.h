@@ -1,0 +1,89 @@
+#pragma once
+
+#include "dynamics/lanes.h"
+
+#include "lockwind/types.h"
+
+#include <cstdint>
+
+namespace lockwind {
+
+inline constexpr std::uint32_t kBlockPoints = 4;
+
+/// A body's velocities while the substeps run, Q11.20 m/s; angular ones times the gyration radius.
+/// Rows of four, so that a body is one vector register.
+struct SolverBody {
+    std::int32_t linear[4];
+    std::int32_t angular[4];
+    std::int32_t linear_moved[4]; // velocities of the last position step
+    std::int32_t angular_moved[4];
+};
+
+/// What prepare reads of a body.
+struct BodyTerms {
+    std::int32_t rotation[9];             // Q2.30; not that of a fixed body, see `turns`
+    std::int32_t inverse_inertia[6];      // xx xy xz yy yz zz, world, Q5.26; 0 unless dynamic
+    std::int32_t inverse_gyration_radius; // Q7.24; 0 of a fixed body
+};
+
+/// Eight contacts, one a lane, of which no two share a dynamic body (but in the overflow colour).
+///
+/// Rows are normalised by K0 = 1/m_a + 1/m_b: an impulse is stored as lambda_hat = lambda K0, in
+/// velocity units, and masses appear only as the shares 1/m / K0. A body's angular velocity and its
+/// inertia are scaled by its gyration radius, so that every coefficient is of order one.
+struct ContactBlock {
+    template <class T>
+    using Lanes = T[kBlockLanes];
+    using Vector3 = std::int32_t[3][kBlockLanes];
+
+    /// One row of a point: J = (-n, jacobian_a, n, jacobian_b), response = M^-1 J^T / K0.
+    struct Row {
+        Vector3 jacobian_a; // Q3.28
+        Vector3 jacobian_b;
+        Vector3 response_a;
+        Vector3 response_b;
+        Lanes<std::int32_t> mass; // K0 / K, Q3.28
+    };
+    struct Point {
+        Row row;
+        Lanes<std::int32_t> lever;      // distance from the friction centre / smaller radius, Q3.28
+        Lanes<std::int32_t> separation; // / substep: Q11.20 m/s
+        Lanes<std::int32_t> impulse;    // Q11.20 m/s
+    };
+
+    Lanes<BodyRow> row_a;
+    Lanes<BodyRow> row_b;
+    Lanes<std::uint32_t> pair;
+    Lanes<std::uint32_t> manifold;
+    Lanes<std::uint32_t> point_count;
+    int lane_count;                // lanes in use, from 0
+    std::uint32_t point_count_max; // of its lanes
+
+    Vector3 normal; // Q3.28, like all below
+    Vector3 tangent[2];
+    Lanes<std::int32_t> share_a;
+    Lanes<std::int32_t> share_b;
+    Lanes<std::int32_t> mass_scale; // see Softness
+    Lanes<std::int32_t> impulse_scale;
+    Lanes<std::int32_t> bias_rate;
+    Lanes<std::int32_t> friction;
+    Lanes<std::int32_t> coupling[6]; // K_ij / K0 of points 10 20 21 30 31 32
+    Point point[kBlockPoints];
+
+    Row tangent_row[2];
+    Lanes<std::int32_t> tangent_coupling; // between the two
+    Lanes<std::int32_t> twist_lever_a;    // smaller gyration radius / that of A, negative
+    Lanes<std::int32_t> twist_lever_b;
+    Vector3 twist_response_a;
+    Vector3 twist_response_b;
+    Lanes<std::int32_t> twist_mass;
+    Lanes<std::int32_t> friction_impulse[2]; // Q11.20 m/s
+    Lanes<std::int32_t> twist_impulse;
+};
+
+/// Index into `coupling` of points (row, column), column < row.
+constexpr int coupling_index(int row, int column) {
+    return row * (row - 1) / 2 + column;
+}
+
+} // namespace lockwind

@@ -1,0 +1,100 @@
+#pragma once
+
+#include "dynamics/solver_format.h"
+
+#include "lockwind/integer.h"
+#include "lockwind/overflow.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace lockwind {
+
+/// Contacts in a block; the widest lanes there are.
+inline constexpr int kBlockLanes = 8;
+
+/// Scales (first, second) back to length `limit` where it is longer: Coulomb's cone, exactly.
+inline void clamp_to_cone(std::int32_t& first, std::int32_t& second, std::int32_t limit) {
+    const auto square = [](std::int32_t value) {
+        return static_cast<std::uint64_t>(std::int64_t{value} * value);
+    };
+    const std::uint64_t length_2 = square(first) + square(second);
+    if (length_2 <= square(limit)) {
+        return;
+    }
+    const auto length = static_cast<std::int64_t>(floor_sqrt(length_2));
+    const std::int64_t scale = (std::int64_t{limit} << kCoefficientFraction) / length;
+    first = static_cast<std::int32_t>(round_shift(first * scale, kCoefficientFraction));
+    second = static_cast<std::int32_t>(round_shift(second * scale, kCoefficientFraction));
+}
+
+/// The solver's kernels are templates over lanes: a vector of int32 and one of the int64 sums of
+/// their products. This is the scalar one and the oracle: another one (AVX2: kWidth 8) has the same
+/// members and gives the same bits, because every operation is exact integer arithmetic.
+struct ScalarLanes {
+    static constexpr int kWidth = 1;
+    using Vector = std::int32_t;
+    using Wide = std::int64_t;
+
+    static Vector load(const std::int32_t* from) { return *from; }
+    static void store(std::int32_t* to, Vector value) { *to = value; }
+    static Vector set(std::int32_t value) { return value; }
+    /// source(lane) of the lanes from `first`.
+    template <class Source>
+    static Vector gather(int first, Source&& source) {
+        return source(first);
+    }
+    /// Hands each lane's value to sink(lane, value).
+    template <class Sink>
+    static void scatter(int first, Vector value, Sink&& sink) {
+        sink(first, value);
+    }
+
+    static Vector add(Vector a, Vector b) { return raw_add(a, b); }
+    static Vector subtract(Vector a, Vector b) { return raw_subtract(a, b); }
+    static Vector negate(Vector a) { return raw_negate(a); }
+    template <int Shift>
+    static Vector shift_right(Vector a) {
+        return a >> Shift;
+    }
+    static Vector minimum(Vector a, Vector b) { return a < b ? a : b; }
+    static Vector maximum(Vector a, Vector b) { return a > b ? a : b; }
+    static Vector clamp(Vector value, Vector low, Vector high) {
+        return minimum(maximum(value, low), high);
+    }
+    /// value > 0 ? positive : other
+    static Vector select_positive(Vector value, Vector positive, Vector other) {
+        return value > 0 ? positive : other;
+    }
+
+    /// A sum to which products are added, and which round<Shift> turns back into a vector.
+    template <int Shift>
+    static Wide start() {
+        return std::int64_t{1} << (Shift - 1);
+    }
+    static Wide add_product(Wide sum, Vector a, Vector b) {
+        return raw_add(sum, std::int64_t{a} * b);
+    }
+    template <int Shift>
+    static Vector round(Wide sum) {
+        return raw_narrow<std::int32_t>(sum >> Shift);
+    }
+    template <int Shift>
+    static Vector multiply(Vector a, Vector b) {
+        return round<Shift>(add_product(start<Shift>(), a, b));
+    }
+    /// floor(2^Power / value), value > 0, exact.
+    template <int Power>
+    static Vector reciprocal(Vector value) {
+        return raw_narrow<std::int32_t>((std::int64_t{1} << Power) / value);
+    }
+    /// floor(sqrt(sum)), 0 <= sum < 2^52, exact.
+    static Vector root(Wide sum) {
+        return static_cast<Vector>(floor_sqrt(static_cast<std::uint64_t>(sum)));
+    }
+    static void clamp_to_cone(Vector& first, Vector& second, Vector limit) {
+        lockwind::clamp_to_cone(first, second, limit);
+    }
+};
+
+} // namespace lockwind

@@ -1,0 +1,315 @@
+#include "dynamics/narrow_phase.h"
+
+#include "dynamics/solver_format.h"
+#include "geometry/bounds.h"
+#include "geometry/collide.h"
+#include "geometry/rotation.h"
+
+#include "lockwind/integer.h"
+#include "lockwind/overflow.h"
+#include "lockwind/world_definition.h"
+
+#include <algorithm>
+
+namespace lockwind {
+
+namespace {
+
+constexpr auto kFixed = static_cast<std::uint8_t>(BodyMode::fixed);
+constexpr std::int64_t kDriftMax = 209715; // 50 mm, Q9.22: a manifold bears this much sliding
+
+bool is_flat(ShapeType type) {
+    return type == ShapeType::box || type == ShapeType::plane;
+}
+
+void cross_unit(const std::int32_t a[3], const std::int32_t b[3], std::int32_t out[3]) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const int next = (axis + 1) % 3;
+        const int last = (axis + 2) % 3;
+        out[axis] = round_unit(static_cast<std::int64_t>(a[next]) * b[last] -
+                               static_cast<std::int64_t>(a[last]) * b[next]);
+    }
+}
+
+/// One look at a pair.
+class PairLook {
+public:
+    PairLook(const DynamicsTables& tables,
+             std::uint32_t tick,
+             const BodyFrames& frames,
+             ManifoldSlots& slots)
+        : tables_(tables), tick_(tick), frames_(frames), slots_(slots) {}
+
+    /// False where the manifold table is full. The pair then does not touch.
+    bool visit(Pair& pair);
+
+private:
+    bool is_still(const Pair& pair) const;
+    bool are_apart(const Pair& pair, const std::int32_t delta[3]) const;
+    void release(Pair& pair);
+    void write_manifold(const Pair& pair,
+                        const std::int32_t delta[3],
+                        const ManifoldGeometry& geometry,
+                        Manifold& manifold) const;
+
+    const DynamicsTables& tables_;
+    std::uint32_t tick_;
+    const BodyFrames& frames_;
+    ManifoldSlots& slots_;
+};
+
+bool is_touching(const Pair& pair) {
+    return pair.point_count != 0;
+}
+
+/// True where no contact point has drifted or turned enough for its manifold to be made anew.
+/// Keeping it is what lets tall stacks stand: the solver's rows then stay exactly the same.
+bool PairLook::is_still(const Pair& pair) const {
+    const BodyFrame& frame_a = frames_[pair.row_a];
+    const BodyFrame& frame_b = frames_[pair.row_b];
+    if (!is_touching(pair) || !is_flat(frame_a.shape.type) || !is_flat(frame_b.shape.type)) {
+        return false;
+    }
+    const Manifold& manifold = tables_.manifolds[pair.manifold];
+    std::int32_t delta[3];
+    pair_delta(frame_a, frame_b, tables_.motion[pair.row_a], tables_.motion[pair.row_b], delta);
+    // A turn by an eighth of the bounding radius; a fixed body does not turn.
+    const BodyProperties& a = tables_.properties[pair.row_a];
+    const BodyProperties& b = tables_.properties[pair.row_b];
+    for (std::uint32_t point = 0; point < pair.point_count; ++point) {
+        std::int32_t turn_a[3] = {0, 0, 0};
+        std::int32_t turn_b[3] = {0, 0, 0};
+        std::int32_t now[3];
+        const std::int32_t* anchor_a = manifold.anchor_a + 3 * point;
+        if (a.mode != kFixed) {
+            rotate(frame_a.rotation, manifold.local_a + 3 * point, now);
+            for (int axis = 0; axis < 3; ++axis) {
+                turn_a[axis] = now[axis] - anchor_a[axis];
+            }
+        }
+        if (b.mode != kFixed) {
+            rotate(frame_b.rotation, manifold.local_b + 3 * point, now);
+            for (int axis = 0; axis < 3; ++axis) {
+                turn_b[axis] = now[axis] - (anchor_a[axis] - manifold.centre_delta[axis]);
+            }
+        }
+        std::int64_t square = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const std::int64_t drift = std::int64_t{delta[axis]} - manifold.centre_delta[axis] +
+                                       turn_b[axis] - turn_a[axis];
+            square += drift * drift;
+            if (magnitude(turn_a[axis]) > a.bounding_radius >> 3 ||
+                magnitude(turn_b[axis]) > b.bounding_radius >> 3) {
+                return false;
+            }
+        }
+        if (square > kDriftMax * kDriftMax) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool PairLook::are_apart(const Pair& pair, const std::int32_t delta[3]) const {
+    const BodyFrame& a = frames_[pair.row_a];
+    const BodyFrame& b = frames_[pair.row_b];
+    if (!is_bounded(a.shape.type) || !is_bounded(b.shape.type)) {
+        return false;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::int64_t reach =
+            std::int64_t{a.half_extents[axis]} + b.half_extents[axis] + kSpeculativeMargin;
+        if (magnitude(std::int64_t{delta[axis]}) > reach) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void PairLook::release(Pair& pair) {
+    if (is_touching(pair)) {
+        slots_.free(tables_.manifolds, pair.manifold);
+    }
+    pair.manifold = kNoIndex;
+    pair.point_count = 0;
+}
+
+/// Turns the friction impulse (f_0 t_0 + f_1 t_1) into the frame of the new normal and tangent.
+void turn_friction(Manifold& manifold,
+                   const std::int32_t normal[3],
+                   const std::int32_t tangent[3]) {
+    std::int32_t old_second[3];
+    std::int32_t new_second[3];
+    cross_unit(manifold.normal, manifold.tangent, old_second);
+    cross_unit(normal, tangent, new_second);
+    const std::int64_t first = manifold.friction_impulse[0];
+    const std::int64_t second = manifold.friction_impulse[1];
+    const auto turned = [&](const std::int32_t axis[3]) {
+        const std::int64_t along = round_unit(dot_wide(manifold.tangent, axis));
+        const std::int64_t across = round_unit(dot_wide(old_second, axis));
+        return static_cast<std::int32_t>(round_unit_wide(first * along + second * across));
+    };
+    manifold.friction_impulse[0] = turned(tangent);
+    manifold.friction_impulse[1] = turned(new_second);
+}
+
+void PairLook::write_manifold(const Pair& pair,
+                              const std::int32_t delta[3],
+                              const ManifoldGeometry& geometry,
+                              Manifold& manifold) const {
+    const Manifold old = manifold;
+    std::int32_t tangent[3];
+    if (!is_touching(pair)) {
+        tangent_of(geometry.normal, tangent);
+    } else if (std::equal(geometry.normal, geometry.normal + 3, old.normal)) {
+        std::copy(old.tangent, old.tangent + 3, tangent);
+    } else {
+        tangent_of(geometry.normal, tangent);
+        turn_friction(manifold, geometry.normal, tangent);
+    }
+    const std::int32_t friction[3] = {
+        manifold.friction_impulse[0], manifold.friction_impulse[1], manifold.twist_impulse};
+    manifold = Manifold{};
+    manifold.row_a = pair.row_a;
+    manifold.row_b = pair.row_b;
+    std::copy(geometry.normal, geometry.normal + 3, manifold.normal);
+    std::copy(tangent, tangent + 3, manifold.tangent);
+    std::copy(delta, delta + 3, manifold.centre_delta);
+    manifold.axis_separation = geometry.axis_separation;
+    manifold.point_count = static_cast<std::uint8_t>(geometry.point_count);
+    std::copy(friction, friction + 2, manifold.friction_impulse);
+    manifold.twist_impulse = friction[2];
+    std::uint32_t unmatched = (1U << pair.point_count) - 1;
+    for (std::uint32_t point = 0; point < geometry.point_count; ++point) {
+        const ManifoldPoint& fresh = geometry.points[point];
+        manifold.separation[point] = fresh.separation;
+        manifold.feature[point] = fresh.feature;
+        std::copy(fresh.local_a, fresh.local_a + 3, manifold.local_a + 3 * point);
+        std::copy(fresh.local_b, fresh.local_b + 3, manifold.local_b + 3 * point);
+        rotate(frames_[pair.row_a].rotation, fresh.local_a, manifold.anchor_a + 3 * point);
+        for (std::uint32_t former = 0; former < pair.point_count; ++former) {
+            const std::uint32_t bit = 1U << former;
+            if ((unmatched & bit) != 0 && old.feature[former] == fresh.feature) {
+                manifold.normal_impulse[point] = old.normal_impulse[former];
+                unmatched &= ~bit;
+                break;
+            }
+        }
+    }
+}
+
+bool PairLook::visit(Pair& pair) {
+    pair.stamp = tick_;
+    if (is_still(pair)) {
+        return true;
+    }
+    const BodyFrame& a = frames_[pair.row_a];
+    const BodyFrame& b = frames_[pair.row_b];
+    std::int32_t delta[3];
+    pair_delta(a, b, tables_.motion[pair.row_a], tables_.motion[pair.row_b], delta);
+    if (are_apart(pair, delta)) {
+        release(pair);
+        return true;
+    }
+    ManifoldCache cache;
+    cache.axis = pair.axis;
+    cache.touching = is_touching(pair);
+    cache.axis_separation =
+        is_touching(pair) ? tables_.manifolds[pair.manifold].axis_separation : 0;
+    ManifoldGeometry geometry;
+    collide(a.shape, b.shape, delta, cache, geometry);
+    pair.axis = static_cast<std::uint8_t>(geometry.axis);
+    if (geometry.point_count == 0) {
+        release(pair);
+        return true;
+    }
+    if (!is_touching(pair)) {
+        const std::uint32_t slot = slots_.take(tables_.manifolds);
+        if (slot == kNoIndex) {
+            return false;
+        }
+        pair.manifold = slot;
+    }
+    write_manifold(pair, delta, geometry, tables_.manifolds[pair.manifold]);
+    pair.point_count = static_cast<std::uint8_t>(geometry.point_count);
+    return true;
+}
+
+/// Damaged rows must not lead outside the tables.
+bool is_sound(const Pair& pair, const DynamicsTables& tables) {
+    if (pair.row_b >= tables.motion.count() || pair.row_a >= pair.row_b) {
+        return false;
+    }
+    if (pair.point_count == 0) {
+        return true;
+    }
+    return pair.point_count <= kManifoldPointsMax && pair.manifold < tables.manifolds.count();
+}
+
+bool has_plane_only(const Pair& pair, const BodyFrames& frames) {
+    return !is_bounded(frames[pair.row_a].shape.type) && !is_bounded(frames[pair.row_b].shape.type);
+}
+
+} // namespace
+
+void tangent_of(const std::int32_t normal[3], std::int32_t tangent[3]) {
+    // The two components that leave out the smaller of x, z: their square sum is at least 1/3.
+    constexpr std::int32_t kInverseRoot3 = 619925132; // Q2.30
+    const bool leave_out_x = magnitude(normal[0]) < kInverseRoot3;
+    const int first = leave_out_x ? 1 : 0;
+    const int second = leave_out_x ? 2 : 1;
+    const std::int64_t a = normal[second];
+    const std::int64_t b = -std::int64_t{normal[first]};
+    const auto length =
+        static_cast<std::int64_t>(floor_sqrt(static_cast<std::uint64_t>(a * a + b * b)));
+    const std::int64_t inverse = (std::int64_t{1} << 62) / std::max(length, std::int64_t{1});
+    std::fill(tangent, tangent + 3, 0);
+    tangent[first] = static_cast<std::int32_t>((a * inverse) >> 32);
+    tangent[second] = static_cast<std::int32_t>((b * inverse) >> 32);
+}
+
+NarrowPhase::NarrowPhase(std::uint32_t body_capacity) : gates_(body_capacity) {}
+
+void NarrowPhase::read_gates(const DynamicsTables& tables, const BodyFrames& frames) {
+    const std::uint32_t count = tables.motion.count();
+    for (BodyRow row = 0; row < count; ++row) {
+        const BodyMotion& motion = tables.motion[row];
+        gates_[row] = {{motion.motion_stamp[kMotionTouching], motion.motion_stamp[kMotionOther]},
+                       is_flat(frames[row].shape.type)};
+    }
+}
+
+bool NarrowPhase::needs_look(const Pair& pair) const {
+    const Gate& a = gates_[pair.row_a];
+    const Gate& b = gates_[pair.row_b];
+    const int level = is_touching(pair) && a.flat && b.flat ? kMotionTouching : kMotionOther;
+    return pair.stamp == 0 || std::max(a.stamp[level], b.stamp[level]) > pair.stamp;
+}
+
+StepFault NarrowPhase::run(const DynamicsTables& tables,
+                           std::uint32_t tick,
+                           const BodyFrames& frames,
+                           ManifoldSlots& slots,
+                           std::vector<ContactChange>& changes) {
+    read_gates(tables, frames);
+    PairLook look(tables, tick, frames, slots);
+    StepFault fault = StepFault::none;
+    const std::uint32_t count = tables.pairs.count();
+    for (std::uint32_t index = 0; index < count; ++index) {
+        Pair& pair = tables.pairs[index];
+        if (!is_sound(pair, tables) || !needs_look(pair) || has_plane_only(pair, frames)) {
+            continue;
+        }
+        const bool touched = is_touching(pair);
+        if (!look.visit(pair)) {
+            fault = StepFault::manifolds_full;
+        }
+        if (is_touching(pair) != touched) {
+            changes.push_back({pair.row_a, pair.row_b, !touched});
+        }
+    }
+    slots.trim(tables.manifolds);
+    return fault;
+}
+
+} // namespace lockwind

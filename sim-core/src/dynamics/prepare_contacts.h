@@ -1,0 +1,356 @@
+#pragma once
+
+#include "dynamics/contact.h"
+#include "dynamics/contact_block.h"
+#include "dynamics/lanes.h"
+
+#include <cstdint>
+
+namespace lockwind {
+
+/// Constants of a contact that need divisions or tables, by lane; made one by one.
+struct PairTerms {
+    const Manifold* manifold[kBlockLanes];
+    const BodyTerms* body_a[kBlockLanes];
+    const BodyTerms* body_b[kBlockLanes];
+    std::int32_t centre_delta[3][kBlockLanes];    // Q9.22 m, now
+    std::int32_t inverse_radius_min[kBlockLanes]; // Q7.24 1/m: of the smaller gyration radius
+    std::int32_t lever_max[kBlockLanes];          // Q9.22 m: 7.5 of the smaller gyration radius
+};
+
+/// Fills the rows of a block from its contacts' manifolds and bodies: normal rows, their couplings,
+/// the friction centre, two tangent rows and the twist row. The block's shares, friction, softness
+/// and twist levers are already there.
+template <class L>
+class BlockPreparation {
+public:
+    using Vector = typename L::Vector;
+
+    BlockPreparation(const PairTerms& terms, ContactBlock& block, int first)
+        : terms_(terms), block_(block), first_(first),
+          points_(L::kWidth == 1 ? block.point_count[first] : block.point_count_max) {}
+
+    void run(std::int32_t substep_rate, std::int32_t separation_max) {
+        load();
+        for (std::uint32_t point = 0; point < points_; ++point) {
+            make_separation(point, substep_rate, separation_max);
+            make_normal_row(point);
+        }
+        find_friction_centre();
+        make_levers();
+        make_tangent_row(0);
+        make_tangent_row(1);
+        make_tangent_coupling();
+        make_twist_row();
+    }
+
+private:
+    using Wide = typename L::Wide;
+    struct Jacobian {
+        Vector a[3];
+        Vector b[3];
+    };
+
+    Vector lane(const std::int32_t (&lanes)[kBlockLanes]) const { return L::load(lanes + first_); }
+    void set_lane(std::int32_t (&lanes)[kBlockLanes], Vector value) const {
+        L::store(lanes + first_, value);
+    }
+    template <class Source>
+    Vector of_manifold(Source&& source) const {
+        return L::gather(first_, [&](int lane) { return source(*terms_.manifold[lane]); });
+    }
+    /// Zero in the lanes that do not have this point.
+    Vector point_mask(std::uint32_t point) const {
+        return L::gather(first_, [&](int lane) {
+            return point < block_.point_count[lane] ? kCoefficientOne : 0;
+        });
+    }
+
+    static Wide add_dot(Wide sum, const Vector a[3], const Vector b[3]) {
+        return L::add_product(
+            L::add_product(L::add_product(sum, a[0], b[0]), a[1], b[1]), a[2], b[2]);
+    }
+    template <int Shift>
+    static Vector dot(const Vector a[3], const Vector b[3]) {
+        return L::template round<Shift>(add_dot(L::template start<Shift>(), a, b));
+    }
+    static void cross(const Vector a[3], const Vector b[3], Vector out[3]) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const int next = (axis + 1) % 3;
+            const int last = (axis + 2) % 3;
+            const Wide sum = L::add_product(L::template start<kUnitFraction>(), a[next], b[last]);
+            out[axis] =
+                L::template round<kUnitFraction>(L::add_product(sum, L::negate(a[last]), b[next]));
+        }
+    }
+    /// (arm / gyration radius) x direction, Q3.28.
+    static void lever_row(const Vector arm[3],
+                          Vector inverse_radius,
+                          const Vector direction[3],
+                          Vector out[3]) {
+        Vector scaled[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            scaled[axis] = L::template multiply<kLengthFraction + kEffectiveMassFraction -
+                                                kCoefficientFraction>(arm[axis], inverse_radius);
+        }
+        cross(scaled, direction, out);
+    }
+    /// inverse inertia x row x share
+    static void respond(const Vector inertia[6], const Vector row[3], Vector share, Vector out[3]) {
+        constexpr int kIndex[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+        for (int axis = 0; axis < 3; ++axis) {
+            Wide sum = L::template start<kInertiaFraction>();
+            for (int column = 0; column < 3; ++column) {
+                sum = L::add_product(sum, inertia[kIndex[axis][column]], row[column]);
+            }
+            out[axis] = L::template multiply<kCoefficientFraction>(
+                L::template round<kInertiaFraction>(sum), share);
+        }
+    }
+    /// 1 / K in Q3.28 of K - linear in Q7.24; `sum` has the angular part in Q8.56.
+    static Vector effective_mass(std::int32_t linear, Wide sum) {
+        constexpr int kShift = 2 * kCoefficientFraction - kEffectiveMassFraction;
+        // Below 1/8 the quotient would leave Q3.28.
+        const Vector least = L::set((1 << (kEffectiveMassFraction - 3)) + 1);
+        const Vector k = L::add(L::set(linear), L::template round<kShift>(sum));
+        return L::template reciprocal<kEffectiveMassFraction + kCoefficientFraction>(
+            L::maximum(k, least));
+    }
+
+    void load();
+    void make_separation(std::uint32_t point, std::int32_t rate, std::int32_t separation_max);
+    void fill_row(const Jacobian& jacobian, ContactBlock::Row& row);
+    Jacobian jacobian_of(const Vector arm_a[3], const Vector arm_b[3], const Vector along[3]) const;
+    void make_normal_row(std::uint32_t point);
+    void find_friction_centre();
+    void make_levers();
+    void make_tangent_row(int which);
+    void make_tangent_coupling();
+    void make_twist_row();
+
+    const PairTerms& terms_;
+    ContactBlock& block_;
+    int first_;
+    std::uint32_t points_;
+
+    Vector axes_[3][3]; // normal, first tangent, second tangent, Q2.30
+    Vector share_a_;
+    Vector share_b_;
+    Vector rotation_a_[9];
+    Vector rotation_b_[9];
+    Vector inertia_a_[6];
+    Vector inertia_b_[6];
+    Vector inverse_radius_a_;
+    Vector inverse_radius_b_;
+    Vector arm_a_[kBlockPoints][3]; // Q9.22 m, world, as when the manifold was made
+    Vector arm_b_[kBlockPoints][3];
+    Vector weight_[kBlockPoints]; // in the friction centre, Q3.28
+    Vector centre_a_[3];
+    Vector centre_b_[3];
+};
+
+template <class L>
+void BlockPreparation<L>::load() {
+    for (int axis = 0; axis < 3; ++axis) {
+        axes_[0][axis] = of_manifold([&](const Manifold& m) { return m.normal[axis]; });
+        axes_[1][axis] = of_manifold([&](const Manifold& m) { return m.tangent[axis]; });
+    }
+    cross(axes_[0], axes_[1], axes_[2]);
+    const auto narrow = [](Vector unit) {
+        constexpr int kShift = kUnitFraction - kCoefficientFraction;
+        return L::template shift_right<kShift>(L::add(unit, L::set(1 << (kShift - 1))));
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+        set_lane(block_.normal[axis], narrow(axes_[0][axis]));
+        set_lane(block_.tangent[0][axis], narrow(axes_[1][axis]));
+        set_lane(block_.tangent[1][axis], narrow(axes_[2][axis]));
+    }
+    share_a_ = lane(block_.share_a);
+    share_b_ = lane(block_.share_b);
+    const auto of_a = [&](auto&& source) {
+        return L::gather(first_, [&](int lane) { return source(*terms_.body_a[lane]); });
+    };
+    const auto of_b = [&](auto&& source) {
+        return L::gather(first_, [&](int lane) { return source(*terms_.body_b[lane]); });
+    };
+    for (int entry = 0; entry < 9; ++entry) {
+        const auto rotation = [=](const BodyTerms& body) { return body.rotation[entry]; };
+        rotation_a_[entry] = of_a(rotation);
+        rotation_b_[entry] = of_b(rotation);
+    }
+    for (int entry = 0; entry < 6; ++entry) {
+        const auto inertia = [=](const BodyTerms& body) { return body.inverse_inertia[entry]; };
+        inertia_a_[entry] = of_a(inertia);
+        inertia_b_[entry] = of_b(inertia);
+    }
+    const auto inverse_radius = [](const BodyTerms& body) { return body.inverse_gyration_radius; };
+    inverse_radius_a_ = of_a(inverse_radius);
+    inverse_radius_b_ = of_b(inverse_radius);
+}
+
+/// How far apart the surfaces are now, as a velocity that closes it in a substep; and the arms.
+template <class L>
+void BlockPreparation<L>::make_separation(std::uint32_t point,
+                                          std::int32_t rate,
+                                          std::int32_t separation_max) {
+    const auto entry = static_cast<int>(3 * point);
+    Vector local_a[3];
+    Vector local_b[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        const int index = entry + axis;
+        local_a[axis] = of_manifold([=](const Manifold& m) { return m.local_a[index]; });
+        local_b[axis] = of_manifold([=](const Manifold& m) { return m.local_b[index]; });
+        arm_a_[point][axis] = of_manifold([=](const Manifold& m) { return m.anchor_a[index]; });
+        arm_b_[point][axis] =
+            L::subtract(arm_a_[point][axis],
+                        of_manifold([=](const Manifold& m) { return m.centre_delta[axis]; }));
+    }
+    Vector apart[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vector now_a = dot<kUnitFraction>(rotation_a_ + 3 * axis, local_a);
+        const Vector now_b = dot<kUnitFraction>(rotation_b_ + 3 * axis, local_b);
+        apart[axis] = L::add(lane(terms_.centre_delta[axis]), L::subtract(now_b, now_a));
+    }
+    const Vector base = of_manifold([=](const Manifold& m) { return m.separation[point]; });
+    // Bounded before the change of unit, which multiplies by up to 960.
+    const Vector separation = L::clamp(L::add(base, dot<kUnitFraction>(axes_[0], apart)),
+                                       L::set(-separation_max),
+                                       L::set(separation_max));
+    set_lane(block_.point[point].separation,
+             L::template multiply<kLengthFraction - kVelocityFraction>(separation, L::set(rate)));
+    // Weight clamp(2 - separation / 20 mm, 1/16, 1): open points bear little friction.
+    const Vector open = L::clamp(separation, L::set(0), L::set(2 * kSpeculativeMargin));
+    const Vector weight = L::subtract(L::set(2 * kCoefficientOne),
+                                      L::template multiply<1>(open, L::set(50 * 64 * 2)));
+    weight_[point] = L::minimum(
+        L::clamp(weight, L::set(kCoefficientOne / 16), L::set(kCoefficientOne)), point_mask(point));
+}
+
+template <class L>
+typename BlockPreparation<L>::Jacobian BlockPreparation<L>::jacobian_of(
+    const Vector arm_a[3], const Vector arm_b[3], const Vector along[3]) const {
+    Jacobian jacobian;
+    lever_row(arm_a, inverse_radius_a_, along, jacobian.a);
+    for (Vector& entry : jacobian.a) {
+        entry = L::negate(entry);
+    }
+    lever_row(arm_b, inverse_radius_b_, along, jacobian.b);
+    return jacobian;
+}
+
+template <class L>
+void BlockPreparation<L>::fill_row(const Jacobian& jacobian, ContactBlock::Row& row) {
+    Jacobian response;
+    respond(inertia_a_, jacobian.a, share_a_, response.a);
+    respond(inertia_b_, jacobian.b, share_b_, response.b);
+    constexpr int kShift = 2 * kCoefficientFraction - kEffectiveMassFraction;
+    Wide sum = add_dot(L::template start<kShift>(), jacobian.a, response.a);
+    sum = add_dot(sum, jacobian.b, response.b);
+    set_lane(row.mass, effective_mass(1 << kEffectiveMassFraction, sum));
+    for (int axis = 0; axis < 3; ++axis) {
+        set_lane(row.jacobian_a[axis], jacobian.a[axis]);
+        set_lane(row.jacobian_b[axis], jacobian.b[axis]);
+        set_lane(row.response_a[axis], response.a[axis]);
+        set_lane(row.response_b[axis], response.b[axis]);
+    }
+}
+
+template <class L>
+void BlockPreparation<L>::make_normal_row(std::uint32_t point) {
+    const Jacobian jacobian = jacobian_of(arm_a_[point], arm_b_[point], axes_[0]);
+    fill_row(jacobian, block_.point[point].row);
+    for (std::uint32_t other = 0; other < point; ++other) {
+        const ContactBlock::Row& row = block_.point[other].row;
+        Wide sum = L::template start<kCoefficientFraction>();
+        for (int axis = 0; axis < 3; ++axis) {
+            sum = L::add_product(sum, jacobian.a[axis], lane(row.response_a[axis]));
+            sum = L::add_product(sum, jacobian.b[axis], lane(row.response_b[axis]));
+        }
+        const int index = coupling_index(static_cast<int>(point), static_cast<int>(other));
+        set_lane(block_.coupling[index],
+                 L::add(L::set(kCoefficientOne), L::template round<kCoefficientFraction>(sum)));
+    }
+}
+
+template <class L>
+void BlockPreparation<L>::find_friction_centre() {
+    Vector total = L::set(0);
+    for (std::uint32_t point = 0; point < points_; ++point) {
+        total = L::add(total, weight_[point]);
+    }
+    // No less than one point's weight: lanes without a contact must not divide by 0.
+    const Vector inverse = // Q5.26
+        L::template reciprocal<54>(L::maximum(total, L::set(kCoefficientOne / 16)));
+    for (int axis = 0; axis < 3; ++axis) {
+        Wide sum_a = L::template start<kCoefficientFraction>();
+        Wide sum_b = sum_a;
+        for (std::uint32_t point = 1; point < points_; ++point) {
+            const Vector part = L::template multiply<26>(weight_[point], inverse);
+            sum_a = L::add_product(sum_a, part, L::subtract(arm_a_[point][axis], arm_a_[0][axis]));
+            sum_b = L::add_product(sum_b, part, L::subtract(arm_b_[point][axis], arm_b_[0][axis]));
+        }
+        centre_a_[axis] = L::add(arm_a_[0][axis], L::template round<kCoefficientFraction>(sum_a));
+        centre_b_[axis] = L::add(arm_b_[0][axis], L::template round<kCoefficientFraction>(sum_b));
+    }
+}
+
+/// How far each point's normal force can resist twist: its distance from the friction centre.
+template <class L>
+void BlockPreparation<L>::make_levers() {
+    const Vector inverse_radius = lane(terms_.inverse_radius_min);
+    const Vector longest = lane(terms_.lever_max);
+    const Vector bound = L::set((8 << kLengthFraction) - 1);
+    for (std::uint32_t point = 0; point < points_; ++point) {
+        Vector from_centre[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            from_centre[axis] = L::clamp(
+                L::subtract(arm_a_[point][axis], centre_a_[axis]), L::negate(bound), bound);
+        }
+        const Vector distance = L::root(add_dot(L::template start<1>(), from_centre, from_centre));
+        const Vector lever =
+            L::template multiply<kLengthFraction + kEffectiveMassFraction - kCoefficientFraction>(
+                L::minimum(distance, longest), inverse_radius);
+        set_lane(block_.point[point].lever, lever);
+    }
+}
+
+template <class L>
+void BlockPreparation<L>::make_tangent_row(int which) {
+    fill_row(jacobian_of(centre_a_, centre_b_, axes_[1 + which]), block_.tangent_row[which]);
+}
+
+template <class L>
+void BlockPreparation<L>::make_tangent_coupling() {
+    const ContactBlock::Row& first = block_.tangent_row[0];
+    const ContactBlock::Row& second = block_.tangent_row[1];
+    Wide sum = L::template start<kCoefficientFraction>();
+    for (int axis = 0; axis < 3; ++axis) {
+        sum = L::add_product(sum, lane(second.jacobian_a[axis]), lane(first.response_a[axis]));
+        sum = L::add_product(sum, lane(second.jacobian_b[axis]), lane(first.response_b[axis]));
+    }
+    set_lane(block_.tangent_coupling, L::template round<kCoefficientFraction>(sum));
+}
+
+template <class L>
+void BlockPreparation<L>::make_twist_row() {
+    const Vector lever_a = lane(block_.twist_lever_a);
+    const Vector lever_b = lane(block_.twist_lever_b);
+    Jacobian jacobian;
+    for (int axis = 0; axis < 3; ++axis) {
+        jacobian.a[axis] = L::template multiply<kUnitFraction>(lever_a, axes_[0][axis]);
+        jacobian.b[axis] = L::template multiply<kUnitFraction>(lever_b, axes_[0][axis]);
+    }
+    Jacobian response;
+    respond(inertia_a_, jacobian.a, share_a_, response.a);
+    respond(inertia_b_, jacobian.b, share_b_, response.b);
+    constexpr int kShift = 2 * kCoefficientFraction - kEffectiveMassFraction;
+    Wide sum = add_dot(L::template start<kShift>(), jacobian.a, response.a);
+    sum = add_dot(sum, jacobian.b, response.b);
+    set_lane(block_.twist_mass, effective_mass(0, sum));
+    for (int axis = 0; axis < 3; ++axis) {
+        set_lane(block_.twist_response_a[axis], response.a[axis]);
+        set_lane(block_.twist_response_b[axis], response.b[axis]);
+    }
+}
+
+} // namespace lockwind

@@ -1,0 +1,354 @@
+#pragma once
+
+#include "dynamics/contact_block.h"
+#include "dynamics/lanes.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace lockwind {
+
+/// Push-out speed of overlapping bodies is at most 3 m/s.
+inline constexpr std::int32_t kPushOutSpeedMax = 3 * kVelocityOne;
+
+/// The passes over one block's lanes from `first`, for contacts of kPoints points; in wider lanes,
+/// contacts that have fewer bear null rows.
+template <class L, std::uint32_t kPoints>
+class BlockSolver {
+public:
+    using Vector = typename L::Vector;
+    using Wide = typename L::Wide;
+
+    BlockSolver(ContactBlock& block, SolverBody* bodies, int first)
+        : block_(block), bodies_(bodies), first_(first) {}
+
+    /// Applies the impulses that the contacts brought from the tick before.
+    void warm_start() {
+        read_velocities();
+        Vector impulse[kPoints];
+        for (std::uint32_t point = 0; point < kPoints; ++point) {
+            impulse[point] = lane(block_.point[point].impulse);
+        }
+        apply_normal(impulse);
+        apply_tangent(lane(block_.friction_impulse[0]), lane(block_.friction_impulse[1]));
+        if constexpr (kPoints > 1) {
+            apply_twist(lane(block_.twist_impulse));
+        }
+        write_velocities();
+    }
+
+    /// Normal rows with their soft bias.
+    void solve() {
+        read_velocities();
+        Vector speed[kPoints];
+        find_speeds(linear_, angular_, speed);
+        Vector applied[kPoints];
+        for (std::uint32_t point = 0; point < kPoints; ++point) {
+            const ContactBlock::Point& p = block_.point[point];
+            const Vector separation = lane(p.separation);
+            const Vector old = lane(p.impulse);
+            const Vector v = coupled_speed(speed[point], applied, point);
+            const Vector open = L::add(v, separation);
+            const Vector bias =
+                L::maximum(scale(separation, lane(block_.bias_rate)), L::set(-kPushOutSpeedMax));
+            const Vector pressed = L::add(scale(v, lane(block_.mass_scale)), bias);
+            const Vector lost = L::add(
+                scale(L::select_positive(separation, open, pressed), lane(p.row.mass)),
+                L::select_positive(separation, L::set(0), scale(old, lane(block_.impulse_scale))));
+            applied[point] = accumulate(point, old, lost);
+        }
+        apply_normal(applied);
+        write_velocities();
+    }
+
+    /// After the position step: moves the separations on, removes what the bias added to the
+    /// velocities, then twist and friction.
+    void relax() {
+        read_velocities();
+        Vector speed[kPoints];
+        find_speeds(linear_, angular_, speed);
+        Vector moved[kPoints];
+        find_moved(moved);
+        Vector applied[kPoints];
+        Vector load = L::set(0);
+        Vector twist_load = L::set(0);
+        for (std::uint32_t point = 0; point < kPoints; ++point) {
+            ContactBlock::Point& p = block_.point[point];
+            const Vector separation = L::add(lane(p.separation), moved[point]);
+            L::store(p.separation + first_, separation);
+            const Vector old = lane(p.impulse);
+            const Vector v = coupled_speed(speed[point], applied, point);
+            const Vector lost =
+                scale(L::add(v, L::maximum(separation, L::set(0))), lane(p.row.mass));
+            applied[point] = accumulate(point, old, lost);
+            const Vector now = L::add(old, applied[point]);
+            load = L::add(load, now);
+            twist_load = L::add(twist_load, scale(now, lane(p.lever)));
+        }
+        apply_normal(applied);
+        const Vector friction = lane(block_.friction);
+        if constexpr (kPoints > 1) {
+            relax_twist(scale(twist_load, friction));
+        }
+        relax_friction(scale(load, friction));
+        write_velocities();
+    }
+
+    /// Separating speeds of the points at the bodies' present velocities. Scalar lanes only.
+    void read_speeds(std::int32_t* out) {
+        read_velocities();
+        Vector speed[kPoints];
+        find_speeds(linear_, angular_, speed);
+        std::copy(speed, speed + kPoints, out);
+    }
+
+    /// Brings one point to a separating speed by an impulse that leaves `carried` + impulse >= 0;
+    /// returns the impulse. Scalar lanes only.
+    std::int32_t reach_speed(std::uint32_t point, std::int32_t target, std::int32_t carried) {
+        std::int32_t speed[kPoints] = {};
+        read_speeds(speed);
+        const std::int32_t lost =
+            scale(L::subtract(speed[point], target), lane(block_.point[point].row.mass));
+        std::int32_t applied[kPoints] = {};
+        applied[point] = L::subtract(L::maximum(L::subtract(carried, lost), 0), carried);
+        apply_normal(applied);
+        write_velocities();
+        return applied[point];
+    }
+
+private:
+    struct Velocities {
+        Vector a[3];
+        Vector b[3];
+    };
+
+    Vector lane(const std::int32_t (&lanes)[kBlockLanes]) const { return L::load(lanes + first_); }
+    static Vector scale(Vector velocity, Vector coefficient) {
+        return L::template multiply<kCoefficientFraction>(velocity, coefficient);
+    }
+    static Wide start() { return L::template start<kCoefficientFraction>(); }
+    static Vector finish(Wide sum) { return L::template round<kCoefficientFraction>(sum); }
+
+    void read_velocities() {
+        for (int axis = 0; axis < 3; ++axis) {
+            linear_.a[axis] = L::gather(
+                first_, [&](int lane) { return bodies_[block_.row_a[lane]].linear[axis]; });
+            linear_.b[axis] = L::gather(
+                first_, [&](int lane) { return bodies_[block_.row_b[lane]].linear[axis]; });
+            angular_.a[axis] = L::gather(
+                first_, [&](int lane) { return bodies_[block_.row_a[lane]].angular[axis]; });
+            angular_.b[axis] = L::gather(
+                first_, [&](int lane) { return bodies_[block_.row_b[lane]].angular[axis]; });
+        }
+    }
+    void write_velocities() {
+        for (int axis = 0; axis < 3; ++axis) {
+            L::scatter(first_, linear_.a[axis], [&](int lane, std::int32_t value) {
+                bodies_[block_.row_a[lane]].linear[axis] = value;
+            });
+            L::scatter(first_, angular_.a[axis], [&](int lane, std::int32_t value) {
+                bodies_[block_.row_a[lane]].angular[axis] = value;
+            });
+            L::scatter(first_, linear_.b[axis], [&](int lane, std::int32_t value) {
+                bodies_[block_.row_b[lane]].linear[axis] = value;
+            });
+            L::scatter(first_, angular_.b[axis], [&](int lane, std::int32_t value) {
+                bodies_[block_.row_b[lane]].angular[axis] = value;
+            });
+        }
+    }
+
+    /// Approach speeds J v of the points.
+    void find_speeds(const Velocities& linear,
+                     const Velocities& angular,
+                     Vector (&speed)[kPoints]) const {
+        Wide along = start();
+        for (int axis = 0; axis < 3; ++axis) {
+            along = L::add_product(
+                along, L::subtract(linear.b[axis], linear.a[axis]), lane(block_.normal[axis]));
+        }
+        for (std::uint32_t point = 0; point < kPoints; ++point) {
+            const ContactBlock::Row& row = block_.point[point].row;
+            Wide sum = along;
+            for (int axis = 0; axis < 3; ++axis) {
+                sum = L::add_product(sum, angular.a[axis], lane(row.jacobian_a[axis]));
+                sum = L::add_product(sum, angular.b[axis], lane(row.jacobian_b[axis]));
+            }
+            speed[point] = finish(sum);
+        }
+    }
+    /// The same of the velocities that moved the bodies: the change of s / h.
+    void find_moved(Vector (&moved)[kPoints]) const {
+        Velocities linear;
+        Velocities angular;
+        for (int axis = 0; axis < 3; ++axis) {
+            linear.a[axis] = L::gather(
+                first_, [&](int lane) { return bodies_[block_.row_a[lane]].linear_moved[axis]; });
+            linear.b[axis] = L::gather(
+                first_, [&](int lane) { return bodies_[block_.row_b[lane]].linear_moved[axis]; });
+            angular.a[axis] = L::gather(
+                first_, [&](int lane) { return bodies_[block_.row_a[lane]].angular_moved[axis]; });
+            angular.b[axis] = L::gather(
+                first_, [&](int lane) { return bodies_[block_.row_b[lane]].angular_moved[axis]; });
+        }
+        find_speeds(linear, angular, moved);
+    }
+
+    /// A point's speed after what the points before it applied.
+    Vector
+    coupled_speed(Vector speed, const Vector (&applied)[kPoints], std::uint32_t point) const {
+        if (point == 0) {
+            return speed;
+        }
+        Wide sum = start();
+        for (std::uint32_t other = 0; other < point; ++other) {
+            const int index = coupling_index(static_cast<int>(point), static_cast<int>(other));
+            sum = L::add_product(sum, applied[other], lane(block_.coupling[index]));
+        }
+        return L::add(speed, finish(sum));
+    }
+    Vector accumulate(std::uint32_t point, Vector old, Vector lost) {
+        const Vector now = L::maximum(L::subtract(old, lost), L::set(0));
+        L::store(block_.point[point].impulse + first_, now);
+        return L::subtract(now, old);
+    }
+
+    void apply_normal(const Vector (&impulse)[kPoints]) {
+        Vector total = impulse[0];
+        for (std::uint32_t point = 1; point < kPoints; ++point) {
+            total = L::add(total, impulse[point]);
+        }
+        const Vector to_a = scale(total, lane(block_.share_a));
+        const Vector to_b = scale(total, lane(block_.share_b));
+        for (int axis = 0; axis < 3; ++axis) {
+            const Vector normal = lane(block_.normal[axis]);
+            linear_.a[axis] = L::subtract(linear_.a[axis], scale(to_a, normal));
+            linear_.b[axis] = L::add(linear_.b[axis], scale(to_b, normal));
+            Wide sum_a = start();
+            Wide sum_b = start();
+            for (std::uint32_t point = 0; point < kPoints; ++point) {
+                const ContactBlock::Row& row = block_.point[point].row;
+                sum_a = L::add_product(sum_a, impulse[point], lane(row.response_a[axis]));
+                sum_b = L::add_product(sum_b, impulse[point], lane(row.response_b[axis]));
+            }
+            angular_.a[axis] = L::add(angular_.a[axis], finish(sum_a));
+            angular_.b[axis] = L::add(angular_.b[axis], finish(sum_b));
+        }
+    }
+
+    void apply_tangent(Vector first, Vector second) {
+        const Vector share_a = lane(block_.share_a);
+        const Vector share_b = lane(block_.share_b);
+        const Vector to_a[2] = {scale(first, share_a), scale(second, share_a)};
+        const Vector to_b[2] = {scale(first, share_b), scale(second, share_b)};
+        const ContactBlock::Row& row_0 = block_.tangent_row[0];
+        const ContactBlock::Row& row_1 = block_.tangent_row[1];
+        const auto sum_of = [](Vector x, Vector by_x, Vector y, Vector by_y) {
+            return finish(L::add_product(L::add_product(start(), x, by_x), y, by_y));
+        };
+        for (int axis = 0; axis < 3; ++axis) {
+            const Vector tangent_0 = lane(block_.tangent[0][axis]);
+            const Vector tangent_1 = lane(block_.tangent[1][axis]);
+            linear_.a[axis] =
+                L::subtract(linear_.a[axis], sum_of(to_a[0], tangent_0, to_a[1], tangent_1));
+            linear_.b[axis] =
+                L::add(linear_.b[axis], sum_of(to_b[0], tangent_0, to_b[1], tangent_1));
+            angular_.a[axis] = L::add(
+                angular_.a[axis],
+                sum_of(first, lane(row_0.response_a[axis]), second, lane(row_1.response_a[axis])));
+            angular_.b[axis] = L::add(
+                angular_.b[axis],
+                sum_of(first, lane(row_0.response_b[axis]), second, lane(row_1.response_b[axis])));
+        }
+    }
+
+    void apply_twist(Vector impulse) {
+        for (int axis = 0; axis < 3; ++axis) {
+            angular_.a[axis] =
+                L::add(angular_.a[axis], scale(impulse, lane(block_.twist_response_a[axis])));
+            angular_.b[axis] =
+                L::add(angular_.b[axis], scale(impulse, lane(block_.twist_response_b[axis])));
+        }
+    }
+
+    void relax_twist(Vector limit) {
+        Wide spin_a = start();
+        Wide spin_b = start();
+        for (int axis = 0; axis < 3; ++axis) {
+            const Vector normal = lane(block_.normal[axis]);
+            spin_a = L::add_product(spin_a, angular_.a[axis], normal);
+            spin_b = L::add_product(spin_b, angular_.b[axis], normal);
+        }
+        const Vector speed = finish(
+            L::add_product(L::add_product(start(), finish(spin_a), lane(block_.twist_lever_a)),
+                           finish(spin_b),
+                           lane(block_.twist_lever_b)));
+        const Vector old = lane(block_.twist_impulse);
+        const Vector now = L::clamp(
+            L::subtract(old, scale(speed, lane(block_.twist_mass))), L::negate(limit), limit);
+        L::store(block_.twist_impulse + first_, now);
+        apply_twist(L::subtract(now, old));
+    }
+
+    void relax_friction(Vector limit) {
+        Wide sum[2] = {start(), start()};
+        for (int axis = 0; axis < 3; ++axis) {
+            const Vector sliding = L::subtract(linear_.b[axis], linear_.a[axis]);
+            for (int which = 0; which < 2; ++which) {
+                const ContactBlock::Row& row = block_.tangent_row[which];
+                sum[which] = L::add_product(sum[which], sliding, lane(block_.tangent[which][axis]));
+                sum[which] =
+                    L::add_product(sum[which], angular_.a[axis], lane(row.jacobian_a[axis]));
+                sum[which] =
+                    L::add_product(sum[which], angular_.b[axis], lane(row.jacobian_b[axis]));
+            }
+        }
+        const Vector old_0 = lane(block_.friction_impulse[0]);
+        const Vector old_1 = lane(block_.friction_impulse[1]);
+        const Vector lost_0 = scale(finish(sum[0]), lane(block_.tangent_row[0].mass));
+        // The first row's impulse changes the second one's speed.
+        const Vector speed_1 =
+            L::subtract(finish(sum[1]), scale(lost_0, lane(block_.tangent_coupling)));
+        Vector now_0 = L::subtract(old_0, lost_0);
+        Vector now_1 = L::subtract(old_1, scale(speed_1, lane(block_.tangent_row[1].mass)));
+        L::clamp_to_cone(now_0, now_1, limit);
+        L::store(block_.friction_impulse[0] + first_, now_0);
+        L::store(block_.friction_impulse[1] + first_, now_1);
+        apply_tangent(L::subtract(now_0, old_0), L::subtract(now_1, old_1));
+    }
+
+    ContactBlock& block_;
+    SolverBody* bodies_;
+    int first_;
+    Velocities linear_;
+    Velocities angular_;
+};
+
+/// Calls visit(solver) with the solver of a lane's number of points.
+template <class Visit>
+void visit_lane(ContactBlock& block, SolverBody* bodies, int lane, Visit&& visit) {
+    switch (block.point_count[lane]) {
+    case 1: {
+        BlockSolver<ScalarLanes, 1> solver(block, bodies, lane);
+        visit(solver);
+        break;
+    }
+    case 2: {
+        BlockSolver<ScalarLanes, 2> solver(block, bodies, lane);
+        visit(solver);
+        break;
+    }
+    case 3: {
+        BlockSolver<ScalarLanes, 3> solver(block, bodies, lane);
+        visit(solver);
+        break;
+    }
+    default: {
+        BlockSolver<ScalarLanes, 4> solver(block, bodies, lane);
+        visit(solver);
+        break;
+    }
+    }
+}
+
+} // namespace lockwind
