@@ -7,13 +7,15 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace lockwind {
 
-/// Makes a real transport behave like a worse link: every packet, outgoing and incoming, is
-/// delayed, lost, doubled or reordered by the same conditions, seeded. What is on the way when it
-/// is destroyed is sent at once, so that a farewell still leaves.
+/// Makes a client's transport behave like a worse link: every packet, outgoing and incoming, is
+/// delayed, lost, doubled or reordered under the same conditions, seeded. Packets move inside the
+/// calls of this object only. What is on its way out when it is destroyed leaves at once, so that a
+/// farewell is heard.
 class ConditionedTransport final : public Transport {
 public:
     ConditionedTransport(std::unique_ptr<Transport> inner,
@@ -36,7 +38,7 @@ public:
     /// several transports at once (DdsParticipant::wait_until) wakes up then and calls receive().
     std::uint64_t next_due_us() const;
 
-    /// Reliable bytes that may be on the way before send() returns full.
+    /// Reliable bytes that may be on their way out before send() returns full.
     static constexpr std::size_t kBacklogSizeBytesMax = std::size_t{16} << 20U;
 
 private:
@@ -46,18 +48,18 @@ private:
         std::vector<std::byte> bytes;
     };
 
-    void pump();
     void send_due(std::uint64_t now_us);
-    void take_arrived(std::uint64_t now_us);
+    bool take_arrived();
 
     std::unique_ptr<Transport> inner_;
     LinkModel out_model_;
     LinkModel in_model_;
-    std::multimap<std::uint64_t, Outgoing> outgoing_; // by time of sending; equal times keep order
-    std::multimap<std::uint64_t, Packet> incoming_;   // by time of arrival; likewise
-    std::vector<Packet> arrived_;                     // scratch
+    // By the time they are due; equal times keep the order of insertion.
+    std::multimap<std::uint64_t, Outgoing> outgoing_;
+    std::multimap<std::uint64_t, Packet> incoming_;
+    std::uint64_t retry_us_ = 0; // no sooner is the inner transport, which was full, tried again
     std::size_t backlog_size_bytes_ = 0;
-    bool inner_full_ = false;
+    std::vector<Packet> arrived_; // kept for its capacity
     TransportStats stats_;
 };
 

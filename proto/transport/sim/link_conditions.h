@@ -3,12 +3,12 @@
 #include "lockwind/result.h"
 
 #include <cstdint>
-#include <string>
 #include <string_view>
 
 namespace lockwind {
 
 inline constexpr std::uint32_t kPartsPerMillion = 1'000'000;
+inline constexpr std::uint32_t kLinkDelayUsMax = 60'000'000; // of latency and jitter
 
 /// One direction of a link. A packet takes latency_us +- jitter_us (uniform), so that jitter alone
 /// may reorder what is not reliable. Chances are per packet, in parts per million.
@@ -24,9 +24,9 @@ struct LinkConditions {
     bool operator==(const LinkConditions&) const = default;
 };
 
-/// Reads "latency=40ms,jitter=10ms,loss=2%,duplicate=1%,reorder=1%,bandwidth=500kB/s". Any of the
-/// keys, each once, in any order. Times in us, ms or s; chances in %, whole or decimal; bandwidth
-/// in kB/s or MB/s (powers of ten).
+/// Reads "latency=40ms,jitter=10ms,loss=2%,duplicate=1%,reorder=1%,bandwidth=500kB/s": any of the
+/// keys, each at most once, in any order. Times in us, ms or s, chances in %, bandwidth in kB/s or
+/// MB/s (powers of ten), whole or with a decimal point.
 Result<LinkConditions> parse_link_conditions(std::string_view text);
 
 } // namespace lockwind
