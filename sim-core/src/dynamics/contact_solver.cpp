@@ -129,10 +129,13 @@ void ContactSolver::read_bodies(const DynamicsTables& tables, const BodyFrames& 
         if (body.mode == kFixed) {
             continue;
         }
+        const std::int32_t linear_max = constants_.linear_speed_max;
+        const std::int32_t angular_max = angular_speed_max(constants_, body.gyration_radius);
         std::int64_t bound = 0;
         for (int axis = 0; axis < 3; ++axis) {
-            solver.linear[axis] = motion.linear_velocity[axis];
-            solver.angular[axis] = motion.angular_velocity[axis];
+            solver.linear[axis] = std::clamp(motion.linear_velocity[axis], -linear_max, linear_max);
+            solver.angular[axis] =
+                std::clamp(motion.angular_velocity[axis], -angular_max, angular_max);
             bound += magnitude(std::int64_t{solver.linear[axis]});
             // No point of a body is farther out than 8 gyration radii.
             bound += 8 * magnitude(std::int64_t{solver.angular[axis]});
