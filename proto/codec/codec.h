@@ -31,7 +31,7 @@ inline constexpr std::size_t kMessageSizeBytesMax = 64'000; // of any encoded me
 inline constexpr std::size_t kNameSizeBytesMax = 64; // match, mode, sim_version, Refuse::field
 inline constexpr std::size_t kSceneNameSizeBytesMax = 256;
 inline constexpr std::size_t kTextSizeBytesMax = 1'024; // build_info; Refuse and End::message
-inline constexpr std::size_t kSceneTextSizeBytesMax = 60'000;
+inline constexpr std::size_t kConfigSceneTextSizeBytesMax = 60'000;
 
 /// Name of the message's kind, as in messages.proto.
 std::string_view kind_name(const Message& message);

@@ -16,7 +16,7 @@ void config_rules(const MatchConfig& config, Rules& rules) {
     rules.text("config.match", config.match, kNameSizeBytesMax);
     rules.text("config.mode", config.mode, kNameSizeBytesMax);
     rules.text("config.scene_name", config.scene_name, kSceneNameSizeBytesMax);
-    rules.text("config.scene_text", config.scene_text, kSceneTextSizeBytesMax);
+    rules.text("config.scene_text", config.scene_text, kConfigSceneTextSizeBytesMax);
     rules.in_range("config.tick_rate_hz", config.tick_rate_hz, 1, kTickRateHzMax);
     rules.in_range("config.players", config.players, 1, rules.limits().players_max);
     rules.at_most("config.input_delay_ticks", config.input_delay_ticks, kInputDelayTicksMax);

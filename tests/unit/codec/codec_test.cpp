@@ -115,7 +115,7 @@ TEST(Codec, CarriesTheLargestOfEachKind) {
     welcome.config.match = name;
     welcome.config.mode = name;
     welcome.config.scene_name.assign(kSceneNameSizeBytesMax, 's');
-    welcome.config.scene_text.assign(kSceneTextSizeBytesMax, 's');
+    welcome.config.scene_text.assign(kConfigSceneTextSizeBytesMax, 's');
     welcome.sim_version = name;
     welcome.build_info = text;
     InputBatch batch;
