@@ -198,15 +198,15 @@ struct EdgePair {
     std::uint32_t sides = 0;
 };
 
-EdgePair face_edges(const Boxes& boxes, int edges, std::int64_t sine) {
+EdgePair face_edges(const Boxes& boxes, int edges) {
     EdgePair pair{edges / 3, edges % 3, {}, {}, {}};
     const int i1 = (pair.i + 1) % 3;
     const int i2 = (pair.i + 2) % 3;
     const std::int32_t* c = boxes.cosines;
-    pair.normal[pair.i] = 0;
-    pair.normal[i1] =
-        static_cast<std::int32_t>(-std::int64_t{c[3 * i2 + pair.j]} * kUnitOne / sine);
-    pair.normal[i2] = static_cast<std::int32_t>(std::int64_t{c[3 * i1 + pair.j]} * kUnitOne / sine);
+    std::int32_t across[3] = {0, 0, 0};
+    across[i1] = -c[3 * i2 + pair.j];
+    across[i2] = c[3 * i1 + pair.j];
+    normalise(across, pair.normal);
     if (dot_wide(pair.normal, boxes.centre) < 0) {
         pair.normal[i1] = -pair.normal[i1];
         pair.normal[i2] = -pair.normal[i2];
@@ -235,8 +235,7 @@ EdgePair face_edges(const Boxes& boxes, int edges, std::int64_t sine) {
 /// Contact of two edges where their nearest points lie on both. False where not: a face then tells
 /// more.
 bool emit_edges(const Boxes& boxes, int edges, ManifoldGeometry& out) {
-    const std::int64_t sine = edge_sine(boxes, edges);
-    const EdgePair pair = face_edges(boxes, edges, sine);
+    const EdgePair pair = face_edges(boxes, edges);
     const std::int64_t cosine = boxes.cosines[edges];
     const std::int32_t direction_b[3] = {
         boxes.cosines[pair.j], boxes.cosines[3 + pair.j], boxes.cosines[6 + pair.j]};
@@ -420,6 +419,7 @@ void find_contact(const Boxes& boxes, ManifoldGeometry& out) {
     }
     FaceContact face;
     clip_face(boxes, faces.best, face);
+    // A face is preferred, as it gives more points and lasts longer: edges must beat it by a slop.
     const std::int64_t face_separation =
         face.count != 0 ? std::int64_t{face.min_separation} : faces.best_separation;
     const EdgeAxes edges = test_edges(boxes, face_separation + kLinearSlop);
