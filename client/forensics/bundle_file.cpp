@@ -106,24 +106,36 @@ Result<Bundle> decode_bundle(const forensics_format::Bundle& message) {
 
 } // namespace
 
+void encode_bundle(const Bundle& bundle, forensics_format::Bundle& out) {
+    out.set_slot(bundle.slot);
+    out.set_agreed_tick(bundle.agreed_tick);
+    out.set_bad_tick(bundle.bad_tick);
+    out.set_server_hash(bundle.server_hash);
+    out.set_client_hash(bundle.client_hash);
+    encode_party(bundle.server, *out.mutable_server());
+    encode_inputs(bundle.inputs, *out.mutable_inputs());
+    out.set_packed_agreed_state(to_string(pack_state(bundle.agreed_state)));
+    out.set_packed_server_state(to_string(pack_state(bundle.server_state)));
+    encode_trace(bundle.server_trace, *out.mutable_server_trace());
+    if (bundle.client) {
+        encode_report(*bundle.client, *out.mutable_client());
+    }
+    out.set_verdict(std::string(to_text(bundle.verdict)));
+    out.set_reason(bundle.reason);
+    out.set_server_at_fault(bundle.server_at_fault);
+}
+
+void encode_snapshot(const Snapshot& snapshot, forensics_format::Snapshot& out) {
+    encode_party(snapshot.party, *out.mutable_party());
+    out.set_tick(snapshot.tick);
+    out.set_hash(snapshot.hash);
+    snapshot.schema.encode(*out.mutable_schema());
+    out.set_packed_state(to_string(pack_state(snapshot.state)));
+}
+
 Status write_bundle(const std::string& path, const Bundle& bundle) {
     forensics_format::Bundle message;
-    message.set_slot(bundle.slot);
-    message.set_agreed_tick(bundle.agreed_tick);
-    message.set_bad_tick(bundle.bad_tick);
-    message.set_server_hash(bundle.server_hash);
-    message.set_client_hash(bundle.client_hash);
-    encode_party(bundle.server, *message.mutable_server());
-    encode_inputs(bundle.inputs, *message.mutable_inputs());
-    message.set_packed_agreed_state(to_string(pack_state(bundle.agreed_state)));
-    message.set_packed_server_state(to_string(pack_state(bundle.server_state)));
-    encode_trace(bundle.server_trace, *message.mutable_server_trace());
-    if (bundle.client) {
-        encode_report(*bundle.client, *message.mutable_client());
-    }
-    message.set_verdict(std::string(to_text(bundle.verdict)));
-    message.set_reason(bundle.reason);
-    message.set_server_at_fault(bundle.server_at_fault);
+    encode_bundle(bundle, message);
     return write_file(path, FileKind::bundle, message);
 }
 
@@ -138,11 +150,7 @@ Result<Bundle> read_bundle(const std::string& path) {
 
 Status write_snapshot(const std::string& path, const Snapshot& snapshot) {
     forensics_format::Snapshot message;
-    encode_party(snapshot.party, *message.mutable_party());
-    message.set_tick(snapshot.tick);
-    message.set_hash(snapshot.hash);
-    snapshot.schema.encode(*message.mutable_schema());
-    message.set_packed_state(to_string(pack_state(snapshot.state)));
+    encode_snapshot(snapshot, message);
     return write_file(path, FileKind::snapshot, message);
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "forensics.pb.h"
+#include "forensics/bundle.h"
 #include "forensics/desync_report.h"
+#include "forensics/snapshot_file.h"
 #include "forensics/trace.h"
 
 #include "lockwind/result.h"
@@ -43,6 +45,9 @@ Result<std::vector<std::vector<SlotInput>>> decode_inputs(const TickInputsList& 
 
 void encode_report(const DesyncReport& report, forensics_format::DesyncReport& out);
 Result<DesyncReport> decode_report(const forensics_format::DesyncReport& message);
+
+void encode_bundle(const Bundle& bundle, forensics_format::Bundle& out);
+void encode_snapshot(const Snapshot& snapshot, forensics_format::Snapshot& out);
 
 /// Number of hashes in a hash tree's `sections` for states of this schema.
 std::size_t state_section_count(StateSchema schema);

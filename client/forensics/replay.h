@@ -13,7 +13,6 @@
 
 namespace lockwind {
 
-class PhaseObserver;
 class TraceSink;
 
 struct ReplayOptions {
