@@ -1,14 +1,17 @@
 #pragma once
 
 #include "dynamics/body.h"
+#include "dynamics/make_body.h"
 
 #include "lockwind/vector.h"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace lockwind {
 
-// Rows of the arena at the API's scale. Reading is exact; writing rounds half up and saturates.
+// Rows of the arena at the API's scale. Reading is exact; writing rounds half up, and holds each
+// component of a velocity to kBodySpeedMax.
 
 inline Vec3 read_velocity(const std::int32_t velocity[3]) {
     return {convert<Real>(Velocity::from_raw(velocity[0])),
@@ -17,9 +20,11 @@ inline Vec3 read_velocity(const std::int32_t velocity[3]) {
 }
 
 inline void write_velocity(const Vec3& value, std::int32_t velocity[3]) {
-    velocity[0] = convert_saturated<Velocity>(value.x).raw();
-    velocity[1] = convert_saturated<Velocity>(value.y).raw();
-    velocity[2] = convert_saturated<Velocity>(value.z).raw();
+    const Real components[3] = {value.x, value.y, value.z};
+    for (int axis = 0; axis < 3; ++axis) {
+        const Real held = std::clamp(components[axis], -kBodySpeedMax, kBodySpeedMax);
+        velocity[axis] = convert<Velocity>(held).raw();
+    }
 }
 
 inline Vec3 read_position(const BodyMotion& motion) {

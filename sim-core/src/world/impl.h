@@ -27,7 +27,7 @@ struct World::Impl {
     static DynamicsTables tables_of(StateArena& arena);
     Error fault_error();
     /// Whether a state can be stepped; see validate.h.
-    Status validate(StateArena& state);
+    Status validate(StateArena& state, const DynamicsTables* known);
 
     // Constants of the match.
     WorldSettings settings;

@@ -8,7 +8,7 @@
 
 namespace lockwind {
 
-Status World::Impl::validate(StateArena& state) {
+Status World::Impl::validate(StateArena& state, const DynamicsTables* known) {
     const DynamicsTables rows = tables_of(state);
     if (Status status = check_globals(state.table<Globals>(section::kGlobals)); !status) {
         return status;
@@ -17,7 +17,7 @@ Status World::Impl::validate(StateArena& state) {
     if (Status status = check_players(state_players, pod_ids); !status) {
         return status;
     }
-    if (Status status = check_bodies(rows, tables(), settings); !status) {
+    if (Status status = check_bodies(rows, known, settings); !status) {
         return status;
     }
     return check_contacts(rows, manifold_seen);
@@ -39,7 +39,8 @@ Status World::load(std::span<const std::byte> bytes) {
     if (Status loaded = load_canonical(impl_->staging, bytes); !loaded) {
         return loaded;
     }
-    if (Status valid = impl_->validate(impl_->staging); !valid) {
+    const DynamicsTables known = impl_->tables();
+    if (Status valid = impl_->validate(impl_->staging, &known); !valid) {
         return valid;
     }
     std::swap(impl_->arena, impl_->staging);
@@ -63,7 +64,7 @@ std::span<std::byte> World::section_bytes(std::uint32_t section) {
 }
 
 Status World::check() const {
-    return impl_->validate(impl_->arena);
+    return impl_->validate(impl_->arena, nullptr);
 }
 
 void World::drop_derived() {

@@ -1,5 +1,6 @@
 #include "world/validate.h"
 
+#include "dynamics/bounds_grid.h"
 #include "dynamics/make_body.h"
 #include "geometry/manifold.h"
 #include "systems/spawn.h"
@@ -8,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <string>
 
 namespace lockwind {
@@ -47,27 +49,27 @@ bool is_unit(std::span<const std::int32_t> vector) {
     return std::abs(square - kUnitSquare) <= kUnitTolerance;
 }
 
+/// Nothing for a body that the broad phase has not seen.
+std::optional<Bounds> fat_bounds(const BodyMotion& motion) {
+    Bounds bounds{};
+    std::copy_n(motion.fat_bounds, 3, bounds.low);
+    std::copy_n(motion.fat_bounds + 3, 3, bounds.high);
+    return bounds.low[0] > bounds.high[0] ? std::nullopt : std::optional(bounds);
+}
+
 bool is_empty_or_near(const BodyMotion& motion, const BodyProperties& properties) {
-    const std::int32_t* bounds = motion.fat_bounds;
-    constexpr std::int32_t kLow = std::numeric_limits<std::int32_t>::min();
-    constexpr std::int32_t kHigh = std::numeric_limits<std::int32_t>::max();
-    if (properties.shape == static_cast<std::uint8_t>(ShapeType::plane)) {
-        const auto is = [](std::int32_t value) {
-            return [value](std::int32_t bound) { return bound == value; };
-        };
-        if (std::all_of(bounds, bounds + 3, is(kLow)) &&
-            std::all_of(bounds + 3, bounds + 6, is(kHigh))) {
-            return true;
-        }
-    }
-    if (bounds[0] > bounds[3]) {
+    const std::optional<Bounds> bounds = fat_bounds(motion);
+    if (!bounds) {
         return true;
+    }
+    if (properties.shape == static_cast<std::uint8_t>(ShapeType::plane)) {
+        return *bounds == kUnbounded;
     }
     // Q9.22 to Q15.16, and both sides of the body.
     const std::int64_t side_max =
         (std::int64_t{properties.bounding_radius} >> 5U) + (kFatBoundsSlack << 16U);
     for (int axis = 0; axis < 3; ++axis) {
-        const std::int64_t side = std::int64_t{bounds[axis + 3]} - bounds[axis];
+        const std::int64_t side = std::int64_t{bounds->high[axis]} - bounds->low[axis];
         if (side < 0 || side > side_max) {
             return false;
         }
@@ -173,6 +175,12 @@ const char* bad_pair_field(const DynamicsTables& tables, std::uint32_t index) {
     if (!is_dynamic(tables, pair.row_a) && !is_dynamic(tables, pair.row_b)) {
         return "row_a";
     }
+    // The broad phase takes a pair whose bounds do not overlap for a new one when they do.
+    const std::optional<Bounds> a = fat_bounds(tables.motion[pair.row_a]);
+    const std::optional<Bounds> b = fat_bounds(tables.motion[pair.row_b]);
+    if (!a || !b || !overlaps(*a, *b)) {
+        return "row_a or its fat_bounds";
+    }
     if (pair.axis > 15) {
         return "axis";
     }
@@ -258,7 +266,7 @@ Status check_players(const Table<Player>& players, std::span<const BodyId> pods)
 }
 
 Status check_bodies(const DynamicsTables& tables,
-                    const DynamicsTables& known,
+                    const DynamicsTables* known,
                     const WorldSettings& settings) {
     const std::uint32_t count = tables.motion.count();
     if (tables.properties.count() != count) {
@@ -270,8 +278,8 @@ Status check_bodies(const DynamicsTables& tables,
         if (motion.id == 0 || (row > 0 && tables.motion[row - 1].id >= motion.id)) {
             return bad("body", row, "id");
         }
-        const bool is_known =
-            row < known.properties.count() && same_build(known.properties[row], properties);
+        const bool is_known = known != nullptr && row < known->properties.count() &&
+                              same_build(known->properties[row], properties);
         if (!is_known && !is_buildable(motion, properties, settings)) {
             return bad("body_properties", row, "mode, shape, size or inertia");
         }

@@ -20,9 +20,9 @@ namespace lockwind {
 
 Status check_globals(const Table<Globals>& globals);
 Status check_players(const Table<Player>& players, std::span<const BodyId> pods);
-/// `known` is a sound state whose bodies need not be looked at again.
+/// `known`, where given, is a sound state: what its bodies are built of is not made anew.
 Status check_bodies(const DynamicsTables& tables,
-                    const DynamicsTables& known,
+                    const DynamicsTables* known,
                     const WorldSettings& settings);
 /// `seen` is scratch of manifold capacity.
 Status check_contacts(const DynamicsTables& tables, std::span<std::uint8_t> seen);

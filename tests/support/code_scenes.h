@@ -1,0 +1,166 @@
+#pragma once
+
+#include "lockwind/player_input.h"
+#include "lockwind/rng.h"
+#include "lockwind/world.h"
+
+#include <cstdint>
+#include <vector>
+
+// Scenes and inputs built in code, for tests that need a world but no scene file.
+namespace lockwind::test {
+
+/// A plane that holds everything with y >= 0 up.
+inline BodyDefinition ground(BodyId id) {
+    BodyDefinition body;
+    body.id = id;
+    body.mode = BodyMode::fixed;
+    body.shape.type = ShapeType::plane;
+    return body;
+}
+
+inline BodyDefinition box(BodyId id, const Vec3& position, const Vec3& half_extents) {
+    BodyDefinition body;
+    body.id = id;
+    body.shape.type = ShapeType::box;
+    body.shape.half_extents = half_extents;
+    body.position = position;
+    return body;
+}
+
+inline BodyDefinition sphere(BodyId id, const Vec3& position, Real radius) {
+    BodyDefinition body;
+    body.id = id;
+    body.shape.type = ShapeType::sphere;
+    body.shape.radius = radius;
+    body.position = position;
+    return body;
+}
+
+inline BodyDefinition capsule(BodyId id, const Vec3& position, Real radius, Real half_height) {
+    BodyDefinition body;
+    body.id = id;
+    body.shape.type = ShapeType::capsule;
+    body.shape.radius = radius;
+    body.shape.half_height = half_height;
+    body.position = position;
+    return body;
+}
+
+/// A pod of the usual shape and its player.
+inline void add_pod(WorldDefinition& definition, BodyId id, const Vec3& position) {
+    BodyDefinition body = box(id, position, {0.5, 0.3, 0.7});
+    body.density = 300;
+    definition.bodies.push_back(body);
+    PodDefinition pod;
+    pod.body = id;
+    definition.pods.push_back(pod);
+}
+
+/// Ground, four walls and a pile of `count` boxes, spheres and capsules that falls, `pods` pods
+/// beside it.
+inline WorldDefinition busy_scene(std::uint32_t count, std::uint32_t pods, std::uint64_t seed = 1) {
+    WorldDefinition definition;
+    definition.name = "busy";
+    definition.settings.seed = seed;
+    definition.settings.bounds = 100;
+    definition.bodies.push_back(ground(1));
+    const Vec3 walls[] = {{16, 1, 0}, {-16, 1, 0}, {0, 1, 16}, {0, 1, -16}};
+    for (BodyId wall = 0; wall < 4; ++wall) {
+        const bool along_x = wall >= 2;
+        BodyDefinition body =
+            box(2 + wall, walls[wall], along_x ? Vec3{16, 1, 0.5} : Vec3{0.5, 1, 16});
+        body.mode = BodyMode::fixed;
+        definition.bodies.push_back(body);
+    }
+    for (std::uint32_t index = 0; index < count; ++index) {
+        const std::int64_t column = index % 8;
+        const std::int64_t row = (index / 8) % 8;
+        const std::int64_t layer = index / 64;
+        const Vec3 jitter{random_symmetric(seed, index, 0) * Real(0.1),
+                          0,
+                          random_symmetric(seed, index, 1) * Real(0.1)};
+        const Vec3 place{Real(column) * Real(1.5) - Real(5.25),
+                         Real(layer) * Real(1.5) + Real(1),
+                         Real(row) * Real(1.5) - Real(5.25)};
+        const BodyId id = 100 + index;
+        switch (index % 3) {
+        case 0:
+            definition.bodies.push_back(box(id, place + jitter, {0.4, 0.3, 0.5}));
+            break;
+        case 1:
+            definition.bodies.push_back(sphere(id, place + jitter, 0.4));
+            break;
+        default:
+            definition.bodies.push_back(capsule(id, place + jitter, 0.3, 0.3));
+        }
+        definition.bodies.back().restitution = index % 4 == 0 ? Real(0.5) : Real(0);
+    }
+    for (std::uint32_t slot = 0; slot < pods; ++slot) {
+        const Vec3 corner{slot % 2 == 0 ? Real(10) : Real(-10),
+                          0.5,
+                          slot % 4 < 2 ? Real(10 + slot / 4) : Real(-10) - Real(slot / 4)};
+        add_pod(definition, 10 + slot, corner);
+    }
+    return definition;
+}
+
+/// Inputs of one tick: each player drives, turns, jumps and shoots by draws that change every 15
+/// ticks.
+inline std::vector<SlotInput> busy_inputs(Tick tick, std::uint32_t slots, std::uint64_t seed = 1) {
+    std::vector<SlotInput> inputs(slots);
+    for (std::uint32_t slot = 0; slot < slots; ++slot) {
+        const std::uint64_t draw = random_u64(seed ^ 0x1234U, slot, tick / 15);
+        PlayerInput input;
+        input.thrust = static_cast<std::int16_t>(draw & 0x7fffU);
+        input.turn = static_cast<std::int16_t>((draw >> 16U) & 0xffffU);
+        input.buttons = static_cast<std::uint16_t>((draw >> 32U) & 3U);
+        inputs[slot].status = InputStatus::confirmed;
+        encode(input, inputs[slot]);
+    }
+    return inputs;
+}
+
+inline std::vector<SlotInput> inputs_of(const std::vector<PlayerInput>& players) {
+    std::vector<SlotInput> inputs(players.size());
+    for (std::size_t slot = 0; slot < players.size(); ++slot) {
+        inputs[slot].status = InputStatus::confirmed;
+        encode(players[slot], inputs[slot]);
+    }
+    return inputs;
+}
+
+/// Asserts where the definition is refused.
+inline WorldPtr make_world(const WorldDefinition& definition) {
+    Result<WorldPtr> world = World::create(definition);
+    if (!world) {
+        assert_failed(world.error().message.c_str(), __FILE__, __LINE__);
+    }
+    return std::move(world).value();
+}
+
+/// Steps with busy inputs; asserts on a fault.
+inline void step_busy(World& world) {
+    const Status status = world.step(busy_inputs(world.tick() + 1, world.slot_count()));
+    if (!status) {
+        assert_failed(status.error().message.c_str(), __FILE__, __LINE__);
+    }
+}
+
+/// Steps without players.
+inline void step_idle(World& world, int ticks = 1) {
+    const std::vector<SlotInput> inputs(world.slot_count());
+    for (int tick = 0; tick < ticks; ++tick) {
+        const Status status = world.step(inputs);
+        if (!status) {
+            assert_failed(status.error().message.c_str(), __FILE__, __LINE__);
+        }
+    }
+}
+
+/// For messages and tolerances of tests only.
+inline double to_double(Real value) {
+    return static_cast<double>(value.raw()) / 4294967296.0;
+}
+
+} // namespace lockwind::test

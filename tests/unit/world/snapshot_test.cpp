@@ -1,0 +1,270 @@
+#include "base/field_access.h"
+#include "dynamics/contact.h"
+#include "tests/support/code_scenes.h"
+#include "world/state.h"
+
+#include "lockwind/hash_tree.h"
+
+#include <cstring>
+#include <functional>
+#include <gtest/gtest.h>
+
+namespace lockwind::test {
+namespace {
+
+/// A world in full swing.
+WorldPtr busy_world(int ticks = 100) {
+    WorldPtr world = make_world(busy_scene(40, 2));
+    for (int tick = 0; tick < ticks; ++tick) {
+        step_busy(*world);
+    }
+    return world;
+}
+
+template <class Row>
+Row* rows(World& world, std::uint32_t section) {
+    return reinterpret_cast<Row*>(world.section_bytes(section).data());
+}
+
+TEST(Snapshot, RestoresEveryBit) {
+    const WorldPtr world = busy_world();
+    std::vector<std::byte> bytes;
+    world->save(bytes);
+    const std::uint64_t hash = world->state_hash();
+    for (int tick = 0; tick < 20; ++tick) {
+        step_busy(*world);
+    }
+    EXPECT_NE(world->state_hash(), hash);
+    ASSERT_TRUE(world->load(bytes).ok());
+    EXPECT_EQ(world->state_hash(), hash);
+    std::vector<std::byte> again;
+    world->save(again);
+    EXPECT_EQ(bytes, again);
+    EXPECT_TRUE(world->events().empty());
+}
+
+TEST(Snapshot, TreesRootIsTheStateHash) {
+    const WorldPtr world = busy_world();
+    EXPECT_EQ(world->hash_tree().root, world->state_hash());
+}
+
+TEST(Snapshot, EveryFieldOfEverySectionReachesTheHashThroughItsPage) {
+    const WorldPtr world = busy_world();
+    const HashTree before = world->hash_tree();
+    for (std::uint32_t section = 0; section < World::schema().size(); ++section) {
+        const SectionDescriptor& descriptor = World::schema()[section];
+        const std::uint32_t row = world->row_count(section) / 2;
+        std::byte* bytes =
+            world->section_bytes(section).data() + std::size_t{row} * descriptor.stride_bytes;
+        for (const FieldDescriptor& field : descriptor.fields) {
+            if (section == section::kArena) {
+                continue; // other counts would show rows that are not there
+            }
+            for (std::uint32_t c = 0; c < field.components; ++c) {
+                const std::uint64_t raw = read_component(field, c, bytes);
+                write_component(field, c, bytes, raw ^ 1U);
+                const HashTree after = world->hash_tree();
+                EXPECT_NE(after.root, before.root) << descriptor.name << "." << field.name;
+                EXPECT_EQ(after.root, world->state_hash());
+                const std::size_t page =
+                    (std::size_t{row} * descriptor.stride_bytes + field.offset_bytes) /
+                    kHashPageBytes;
+                for (std::uint32_t other = 0; other < before.sections.size(); ++other) {
+                    EXPECT_EQ(after.sections[other] == before.sections[other], other != section);
+                }
+                EXPECT_NE(after.pages[section][page], before.pages[section][page]);
+                write_component(field, c, bytes, raw);
+            }
+        }
+    }
+    EXPECT_EQ(world->state_hash(), before.root);
+}
+
+TEST(Snapshot, RefusesWhatHasAnotherNumberOfSlots) {
+    const WorldPtr two = busy_world(3);
+    std::vector<std::byte> bytes;
+    two->save(bytes);
+    const WorldPtr one = make_world(busy_scene(40, 1));
+    const Status status = one->load(bytes);
+    ASSERT_FALSE(status.ok());
+    EXPECT_NE(status.error().message.find("player"), std::string::npos);
+}
+
+struct Damage {
+    const char* name;
+    std::function<void(World&)> apply;
+};
+
+/// Puts a damaged state into a snapshot and expects it refused, and the world as it was.
+void expect_refused(const std::vector<std::byte>& sound, const Damage& damage) {
+    const WorldPtr source = make_world(busy_scene(40, 2));
+    ASSERT_TRUE(source->load(sound).ok());
+    damage.apply(*source);
+    EXPECT_FALSE(source->check().ok()) << damage.name;
+    std::vector<std::byte> bytes;
+    source->save(bytes);
+    const WorldPtr target = make_world(busy_scene(40, 2));
+    const std::uint64_t hash = target->state_hash();
+    const Status status = target->load(bytes);
+    EXPECT_FALSE(status.ok()) << damage.name;
+    EXPECT_EQ(target->state_hash(), hash) << damage.name;
+    step_idle(*target, 2);
+}
+
+Pair& touching(World& world) {
+    Pair* pair = rows<Pair>(world, section::kPair);
+    while (pair->manifold == kNoIndex) {
+        ++pair;
+    }
+    return *pair;
+}
+
+Pair& apart(World& world) {
+    Pair* pair = rows<Pair>(world, section::kPair);
+    while (pair->manifold != kNoIndex) {
+        ++pair;
+    }
+    return *pair;
+}
+
+BodyMotion& body(World& world) {
+    return rows<BodyMotion>(world, section::kBody)[20];
+}
+
+BodyProperties& properties(World& world) {
+    return rows<BodyProperties>(world, section::kBodyProperties)[20];
+}
+
+Manifold& manifold(World& world) {
+    return rows<Manifold>(world, section::kManifold)[touching(world).manifold];
+}
+
+Player& player(World& world) {
+    return rows<Player>(world, section::kPlayer)[1];
+}
+
+TEST(Snapshot, RefusesDamagedBodies) {
+    const WorldPtr world = busy_world();
+    std::vector<std::byte> sound;
+    world->save(sound);
+    const Damage damages[] = {
+        {"id 0", [](World& w) { rows<BodyMotion>(w, section::kBody)[0].id = 0; }},
+        {"ids not ascending", [](World& w) { body(w).id = (&body(w))[1].id; }},
+        {"position", [](World& w) { body(w).position[1] = std::int64_t{30001} << 32U; }},
+        {"position", [](World& w) { body(w).position[1] = std::int64_t{-30001} * (1LL << 32U); }},
+        {"orientation", [](World& w) { body(w).orientation[2] += 1 << 24U; }},
+        {"orientation", [](World& w) { std::memset(body(w).orientation, 0, 16); }},
+        {"velocity", [](World& w) { body(w).linear_velocity[0] = 0x7fffffff; }},
+        {"spin", [](World& w) { body(w).angular_velocity[0] = -0x7fffffff - 1; }},
+        {"bounds", [](World& w) { body(w).fat_bounds[4] = 0x7fffffff; }},
+        {"bounds", [](World& w) { std::swap(body(w).fat_bounds[2], body(w).fat_bounds[5]); }},
+        {"motion sum", [](World& w) { body(w).motion_sum[1] = -1; }},
+        {"mode", [](World& w) { properties(w).mode = 3; }},
+        {"mode of a dynamic body", [](World& w) { properties(w).mode = 1; }},
+        {"shape", [](World& w) { properties(w).shape = 4; }},
+        {"another shape", [](World& w) { properties(w).shape ^= 1; }},
+        {"size", [](World& w) { properties(w).size[0] = 0; }},
+        {"size", [](World& w) { properties(w).size[0] = -properties(w).size[0]; }},
+        {"bounding radius", [](World& w) { properties(w).bounding_radius += 1; }},
+        {"gyration radius", [](World& w) { properties(w).gyration_radius += 1; }},
+        {"inverse gyration", [](World& w) { properties(w).inverse_gyration_radius = 0; }},
+        {"inverse inertia", [](World& w) { properties(w).inverse_inertia[0] *= -1; }},
+        {"inverse mass", [](World& w) { properties(w).inverse_mass = 0; }},
+        {"inverse mass", [](World& w) { properties(w).inverse_mass = -1; }},
+        {"inverse mass", [](World& w) { properties(w).inverse_mass = std::int64_t{1} << 62U; }},
+        {"friction", [](World& w) { properties(w).friction = -1; }},
+        {"friction", [](World& w) { properties(w).friction = 0x7fffffff; }},
+        {"restitution", [](World& w) { properties(w).restitution = 0x7fffffff; }},
+        {"padding", [](World& w) { properties(w).zero[1] = 1; }},
+        {"spawn count", [](World& w) { properties(w).spawn_count = 0x80000000U; }},
+        {"spawn count below a living ball's",
+         [](World& w) {
+             BodyProperties* pods = rows<BodyProperties>(w, section::kBodyProperties);
+             for (std::uint32_t row = 0; row < w.row_count(section::kBody); ++row) {
+                 pods[row].spawn_count = 0;
+             }
+         }},
+    };
+    for (const Damage& damage : damages) {
+        expect_refused(sound, damage);
+    }
+}
+
+TEST(Snapshot, RefusesDamagedContacts) {
+    const WorldPtr world = busy_world();
+    std::vector<std::byte> sound;
+    world->save(sound);
+    const Damage damages[] = {
+        {"row beyond the bodies", [](World& w) { apart(w).row_b = w.body_count(); }},
+        {"row_a >= row_b", [](World& w) { apart(w).row_a = apart(w).row_b; }},
+        {"pairs not ascending",
+         [](World& w) {
+             Pair* pairs = rows<Pair>(w, section::kPair);
+             std::swap(pairs[3], pairs[4]);
+         }},
+        {"a pair twice",
+         [](World& w) {
+             Pair* pairs = rows<Pair>(w, section::kPair);
+             pairs[3] = pairs[4];
+         }},
+        {"two fixed bodies",
+         [](World& w) {
+             Pair& first = rows<Pair>(w, section::kPair)[0];
+             first.row_a = 0;
+             first.row_b = 1;
+         }},
+        {"axis", [](World& w) { apart(w).axis = 16; }},
+        {"padding", [](World& w) { apart(w).zero[0] = 1; }},
+        {"points without a manifold", [](World& w) { apart(w).point_count = 1; }},
+        {"a manifold without points", [](World& w) { touching(w).point_count = 0; }},
+        {"manifold out of range",
+         [](World& w) { touching(w).manifold = w.row_count(section::kManifold); }},
+        {"manifold of another pair",
+         [](World& w) {
+             touching(w).manifold = (touching(w).manifold + 1) % w.row_count(section::kManifold);
+         }},
+        {"a lost manifold",
+         [](World& w) {
+             touching(w).point_count = 0;
+             touching(w).manifold = kNoIndex;
+         }},
+        {"five points",
+         [](World& w) {
+             manifold(w).point_count = 5;
+             touching(w).point_count = 5;
+         }},
+        {"points that differ", [](World& w) { manifold(w).point_count ^= 1; }},
+        {"rows that differ", [](World& w) { manifold(w).row_b += 1; }},
+        {"normal", [](World& w) { manifold(w).normal[1] /= 2; }},
+        {"tangent", [](World& w) { std::memset(manifold(w).tangent, 0, 12); }},
+        {"impulse", [](World& w) { manifold(w).normal_impulse[0] = -1; }},
+        {"impulse", [](World& w) { manifold(w).normal_impulse[0] = 0x7fffffff; }},
+        {"friction impulse", [](World& w) { manifold(w).friction_impulse[1] = 0x7fffffff; }},
+        {"twist impulse", [](World& w) { manifold(w).twist_impulse = -0x7fffffff; }},
+        {"anchor", [](World& w) { manifold(w).anchor_a[1] = 0x7fffffff; }},
+        {"local", [](World& w) { manifold(w).local_b[0] = 0x7fffffff; }},
+        {"centre delta", [](World& w) { manifold(w).centre_delta[2] = 0x7fffffff; }},
+        {"separation", [](World& w) { manifold(w).separation[0] = -0x7fffffff; }},
+        {"padding", [](World& w) { manifold(w).zero[2] = 1; }},
+    };
+    for (const Damage& damage : damages) {
+        expect_refused(sound, damage);
+    }
+}
+
+TEST(Snapshot, RefusesDamagedPlayers) {
+    const WorldPtr world = busy_world();
+    std::vector<std::byte> sound;
+    world->save(sound);
+    const Damage damages[] = {
+        {"another pod", [](World& w) { player(w).body = 10; }},
+        {"shooting", [](World& w) { player(w).shooting = 2; }},
+        {"padding", [](World& w) { player(w).zero[4] = 1; }},
+    };
+    for (const Damage& damage : damages) {
+        expect_refused(sound, damage);
+    }
+}
+
+} // namespace
+} // namespace lockwind::test
