@@ -65,7 +65,7 @@ constexpr std::uint64_t squared_length(const std::int32_t v[3]) {
     return sum;
 }
 
-/// Length of v rounded down, and its unit vector (each component within 2 ulp); 0 leaves `unit`
+/// Length of v (below 512 m) rounded down, and its unit vector (each component within 2 ulp); 0 leaves `unit`
 /// alone. The vector is first scaled to 30 bits, so that short ones lose no digits.
 inline std::int32_t normalise(const std::int32_t v[3], std::int32_t unit[3]) {
     const auto bits =
@@ -73,12 +73,11 @@ inline std::int32_t normalise(const std::int32_t v[3], std::int32_t unit[3]) {
     if (bits == 0) {
         return 0;
     }
-    const int shift = std::countl_zero(bits) - 2;
+    const int shift = bits < (1U << 30U) ? std::countl_zero(bits) - 2 : 0;
     std::int64_t scaled[3];
     std::uint64_t square = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        const std::int64_t value = v[axis];
-        scaled[axis] = shift < 0 ? value >> 1 : value * (std::int64_t{1} << shift);
+        scaled[axis] = v[axis] * (std::int64_t{1} << shift);
         square += static_cast<std::uint64_t>(scaled[axis] * scaled[axis]);
     }
     const std::uint64_t root = floor_sqrt(square);
@@ -87,7 +86,7 @@ inline std::int32_t normalise(const std::int32_t v[3], std::int32_t unit[3]) {
     for (int axis = 0; axis < 3; ++axis) {
         unit[axis] = static_cast<std::int32_t>(round_shift(scaled[axis] * reciprocal, 32));
     }
-    return static_cast<std::int32_t>(shift < 0 ? root << 1U : root >> shift);
+    return static_cast<std::int32_t>(root >> shift);
 }
 
 } // namespace lockwind
