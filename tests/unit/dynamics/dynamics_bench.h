@@ -1,0 +1,171 @@
+#pragma once
+
+#include "base/table.h"
+#include "dynamics/dynamics.h"
+#include "dynamics/make_body.h"
+
+#include "lockwind/world_definition.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <gtest/gtest.h>
+#include <memory>
+#include <vector>
+
+namespace lockwind {
+
+/// All that a Dynamics reads and writes: four tables and the tick.
+struct DynamicsState {
+    std::vector<BodyMotion> motion;
+    std::vector<BodyProperties> properties;
+    std::vector<Pair> pairs;
+    std::vector<Manifold> manifolds;
+    std::uint32_t motion_count = 0;
+    std::uint32_t properties_count = 0;
+    std::uint32_t pair_count = 0;
+    std::uint32_t manifold_count = 0;
+    std::uint32_t tick = 0;
+};
+
+inline bool same_bits(const DynamicsState& a, const DynamicsState& b) {
+    const auto same = [](const auto& x, const auto& y) {
+        return x.size() == y.size() &&
+               std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
+    };
+    return a.tick == b.tick && a.motion_count == b.motion_count && a.pair_count == b.pair_count &&
+           a.manifold_count == b.manifold_count && same(a.motion, b.motion) &&
+           same(a.properties, b.properties) && same(a.pairs, b.pairs) &&
+           same(a.manifolds, b.manifolds);
+}
+
+/// A Dynamics over tables in vectors, for tests: no world, no players, no despawning.
+class DynamicsBench {
+public:
+    explicit DynamicsBench(WorldSettings settings = {}, std::uint32_t capacity = 256)
+        : settings_(settings), capacity_(capacity),
+          pair_capacity_(settings.pair_capacity != 0 ? settings.pair_capacity : 16 * capacity),
+          manifold_capacity_(settings.manifold_capacity != 0 ? settings.manifold_capacity
+                                                             : 8 * capacity) {
+        state_.motion.resize(capacity);
+        state_.properties.resize(capacity);
+        state_.pairs.resize(pair_capacity());
+        state_.manifolds.resize(manifold_capacity());
+        renew();
+    }
+
+    std::uint32_t pair_capacity() const { return pair_capacity_; }
+    std::uint32_t manifold_capacity() const { return manifold_capacity_; }
+
+    /// A Dynamics that remembers nothing.
+    void renew() {
+        DynamicsSettings settings;
+        settings.tick_rate_hz = settings_.tick_rate_hz;
+        settings.substeps = settings_.substeps;
+        settings.gravity = settings_.gravity;
+        settings.linear_speed_max = settings_.linear_speed_max;
+        settings.angular_speed_max = settings_.angular_speed_max;
+        settings.body_capacity = capacity_;
+        settings.pair_capacity = pair_capacity();
+        settings.manifold_capacity = manifold_capacity();
+        dynamics_ = std::make_unique<Dynamics>(settings);
+    }
+
+    BodyRow add(BodyDefinition definition) {
+        const BodyRow row = state_.motion_count++;
+        ++state_.properties_count;
+        definition.id = row + 1;
+        const Status made =
+            make_body(definition, settings_, state_.motion[row], state_.properties[row]);
+        EXPECT_TRUE(made.ok()) << made.error().message;
+        return row;
+    }
+
+    DynamicsTables tables() {
+        return {{state_.motion.data(), &state_.motion_count, capacity_},
+                {state_.properties.data(), &state_.properties_count, capacity_},
+                {state_.pairs.data(), &state_.pair_count, pair_capacity()},
+                {state_.manifolds.data(), &state_.manifold_count, manifold_capacity()}};
+    }
+
+    void step() {
+        ++state_.tick;
+        ASSERT_EQ(dynamics_->broad_phase(tables()), StepFault::none);
+        ASSERT_EQ(dynamics_->narrow_phase(tables(), state_.tick), StepFault::none);
+        dynamics_->solve(tables(), state_.tick);
+        dynamics_->restitution(tables());
+    }
+    void run(int ticks) {
+        for (int tick = 0; tick < ticks; ++tick) {
+            step();
+        }
+    }
+
+    Dynamics& dynamics() { return *dynamics_; }
+    DynamicsState& state() { return state_; }
+    BodyMotion& motion(BodyRow row) { return state_.motion[row]; }
+    BodyProperties& properties(BodyRow row) { return state_.properties[row]; }
+
+    double position(BodyRow row, int axis) const {
+        return std::ldexp(static_cast<double>(state_.motion[row].position[axis]), -32);
+    }
+    double velocity(BodyRow row, int axis) const {
+        return std::ldexp(state_.motion[row].linear_velocity[axis], -20);
+    }
+    /// rad/s
+    double spin(BodyRow row, int axis) const {
+        const double radius = std::ldexp(state_.properties[row].gyration_radius, -22);
+        return std::ldexp(state_.motion[row].angular_velocity[axis], -20) / radius;
+    }
+    double speed(BodyRow row) const {
+        return std::hypot(velocity(row, 0), velocity(row, 1), velocity(row, 2));
+    }
+
+private:
+    WorldSettings settings_;
+    std::uint32_t capacity_;
+    std::uint32_t pair_capacity_;
+    std::uint32_t manifold_capacity_;
+    DynamicsState state_;
+    std::unique_ptr<Dynamics> dynamics_;
+};
+
+inline Real real(double value) {
+    return Real::from_raw(std::llround(std::ldexp(value, 32)));
+}
+inline Vec3 vec(double x, double y, double z) {
+    return {real(x), real(y), real(z)};
+}
+
+inline BodyDefinition ball(double radius, const Vec3& position) {
+    BodyDefinition body;
+    body.shape.type = ShapeType::sphere;
+    body.shape.radius = real(radius);
+    body.position = position;
+    return body;
+}
+inline BodyDefinition box(double x, double y, double z, const Vec3& position) {
+    BodyDefinition body;
+    body.shape.type = ShapeType::box;
+    body.shape.half_extents = vec(x, y, z);
+    body.position = position;
+    return body;
+}
+inline BodyDefinition cube(double half, const Vec3& position) {
+    return box(half, half, half, position);
+}
+inline BodyDefinition fixed(BodyDefinition body) {
+    body.mode = BodyMode::fixed;
+    return body;
+}
+/// A half space below height 0, tilted about z by `angle` (rad): it rises towards +x.
+inline BodyDefinition ground(double angle = 0) {
+    BodyDefinition body;
+    body.mode = BodyMode::fixed;
+    body.shape.type = ShapeType::plane;
+    body.orientation = {0, 0, real(std::sin(angle / 2)), real(std::cos(angle / 2))};
+    return body;
+}
+
+} // namespace lockwind
