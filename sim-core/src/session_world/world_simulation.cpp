@@ -5,6 +5,8 @@
 
 #include "lockwind/player_input.h"
 
+#include <optional>
+
 namespace lockwind {
 
 namespace {
@@ -31,32 +33,38 @@ std::string phase_names() {
     return names;
 }
 
-/// Row to corrupt: the first dynamic body's in the sections of bodies, else the first.
-std::uint32_t first_row(const World& world, std::uint32_t section) {
-    if (section != section::kBody && section != section::kBodyProperties) {
-        return 0;
+/// Row to corrupt: the first dynamic body's in the sections of bodies, else the first. Nothing
+/// where the section has no row.
+std::optional<std::uint32_t> row_to_corrupt(const World& world, std::uint32_t section) {
+    if (world.row_count(section) == 0) {
+        return std::nullopt;
     }
-    for (BodyRow row = 0; row < world.body_count(); ++row) {
-        if (world.body_at(row).mode == BodyMode::dynamic) {
-            return row;
+    if (section == section::kBody || section == section::kBodyProperties) {
+        for (BodyRow row = 0; row < world.body_count(); ++row) {
+            if (world.body_at(row).mode == BodyMode::dynamic) {
+                return row;
+            }
         }
     }
     return 0;
 }
 
-/// Adds `delta` to a component's raw value. False where the section has no row.
-bool add_raw(World& world, const FieldPlace& place, std::int64_t delta) {
-    const std::uint32_t row = first_row(world, place.section);
-    if (row >= world.row_count(place.section)) {
-        return false;
-    }
+/// Adds `delta` to a component's raw value.
+void add_raw(World& world, const FieldPlace& place, std::uint32_t row, std::int64_t delta) {
     const SectionDescriptor& section = World::schema()[place.section];
     const FieldDescriptor& field = section.fields[place.field];
     std::byte* bytes =
         world.section_bytes(place.section).data() + std::size_t{section.stride_bytes} * row;
     const std::uint64_t raw = read_component(field, place.component, bytes);
     write_component(field, place.component, bytes, raw + static_cast<std::uint64_t>(delta));
-    return true;
+}
+
+void corrupt_default(World& world) {
+    const std::optional<FieldPlace> place = find_field(World::schema(), kDefaultField);
+    const std::optional<std::uint32_t> row = row_to_corrupt(world, place->section);
+    if (row) {
+        add_raw(world, *place, *row, 1);
+    }
 }
 
 } // namespace
@@ -66,8 +74,7 @@ struct WorldSimulation::Impl final : PhaseObserver {
 
     void after_phase(std::uint32_t phase) override {
         if (phase == fault_phase) {
-            const std::optional<FieldPlace> place = find_field(World::schema(), kDefaultField);
-            add_raw(*world, *place, 1);
+            corrupt_default(*world);
         }
         if (observer != nullptr) {
             observer->after_phase(phase);
@@ -157,13 +164,15 @@ Status WorldSimulation::corrupt_field(std::string_view field) {
         return Error{"no field \"" + std::string(path) +
                      "\"; the state has: " + field_names(World::schema())};
     }
-    if (!add_raw(world, *place, 1)) {
+    const std::optional<std::uint32_t> row = row_to_corrupt(world, place->section);
+    if (!row) {
         return Error{"field \"" + std::string(path) + "\": the section has no row now"};
     }
+    add_raw(world, *place, *row, 1);
     if (!world.check()) {
-        add_raw(world, *place, -2);
+        add_raw(world, *place, *row, -2);
         if (!world.check()) {
-            add_raw(world, *place, 1);
+            add_raw(world, *place, *row, 1);
             return Error{"field \"" + std::string(path) +
                          "\": another value would leave no state that can be stepped"};
         }
