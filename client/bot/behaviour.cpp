@@ -51,12 +51,13 @@ Bearing bearing(const Flat& ahead, const Flat& delta) {
     return {ahead.z * delta.x - ahead.x * delta.z, ahead.x * delta.x + ahead.z * delta.z};
 }
 
+/// The stick turns right, which is about -y.
 std::int16_t turn_towards(const Bearing& to) {
     // Full stick beyond ~30 degrees, proportional within.
     if (to.cosine <= 0 || std::llabs(to.sine) * 2 > to.cosine) {
-        return to.sine >= 0 ? kFullStick : static_cast<std::int16_t>(-kFullStick);
+        return to.sine >= 0 ? static_cast<std::int16_t>(-kFullStick) : kFullStick;
     }
-    return static_cast<std::int16_t>(to.sine * 2 * kFullStick / to.cosine);
+    return static_cast<std::int16_t>(-to.sine * 2 * kFullStick / to.cosine);
 }
 
 class Idle final : public Behaviour {
@@ -98,20 +99,29 @@ public:
         const Bearing to = bearing(heading(self->orientation), *target);
         const std::int64_t distance_squared = target->x * target->x + target->z * target->z;
         const bool close = distance_squared < square_m(4);
-        const bool aimed = to.cosine > 0 && std::llabs(to.sine) * 6 < to.cosine;
+        const bool aimed = to.cosine > 0 && std::llabs(to.sine) * 3 < to.cosine;
         PlayerInput input;
         input.turn = turn_towards(to);
-        input.thrust = close ? -kFullStick / 2 : kFullStick;
+        const bool stuck = is_stuck(*self);
+        const bool backs_off = close || (stuck && draw(seed_, slot, tick / kWhimTicks) % 2 == 0);
+        input.thrust = backs_off ? -kFullStick : kFullStick;
         if (aimed && distance_squared < square_m(40)) {
             input.buttons |= PlayerInput::kShoot;
         }
-        if (draw(~seed_, slot, tick) % 120 == 0) {
+        if (draw(~seed_, slot, tick) % (stuck ? 20U : 120U) == 0) {
             input.buttons |= PlayerInput::kJump;
         }
         return input;
     }
 
 private:
+    /// Slower than 0.5 m/s.
+    static bool is_stuck(const BodyView& self) {
+        constexpr std::int64_t kSlow = std::int64_t{1} << 31U; // Q31.32
+        return std::llabs(self.linear_velocity.x.raw()) < kSlow &&
+               std::llabs(self.linear_velocity.z.raw()) < kSlow;
+    }
+
     /// (metres)^2 in the unit of Flat, squared.
     static std::int64_t square_m(std::int64_t metres) { return (metres * metres) << 32; }
 
