@@ -56,7 +56,7 @@ void encode_party(const Party& party, forensics_format::Party& out) {
 
 Result<Party> decode_party(const forensics_format::Party& message) {
     Party party{message.sim_version(), message.build_info(), decode_config(message.config())};
-    if (Status status = check(party.config); !status) {
+    if (Status status = check_readable(party.config); !status) {
         return status.error();
     }
     return party;

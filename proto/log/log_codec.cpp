@@ -177,6 +177,18 @@ MatchConfig decode_config(const log_format::MatchConfig& message) {
     return config;
 }
 
+Status check_readable(const MatchConfig& config) {
+    if (config.players < 1 || config.players > kPlayersMax) {
+        return Error{"header: players is " + std::to_string(config.players) + ", not 1 to " +
+                     std::to_string(kPlayersMax)};
+    }
+    if (config.tick_rate_hz < 1 || config.tick_rate_hz > kTickRateHzMax) {
+        return Error{"header: tick_rate_hz is " + std::to_string(config.tick_rate_hz) +
+                     ", not 1 to " + std::to_string(kTickRateHzMax)};
+    }
+    return Success{};
+}
+
 std::string encode_header(const LogHeader& header) {
     log_format::Record message;
     log_format::Header& out = *message.mutable_header();
@@ -191,8 +203,10 @@ std::string encode_header(const LogHeader& header) {
 
 Result<LogHeader> decode_header(std::string_view payload) {
     log_format::Record message;
-    if (!message.ParseFromArray(payload.data(), static_cast<int>(payload.size())) ||
-        !message.has_header()) {
+    if (!message.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
+        return Error{"the header does not parse; its texts must be UTF-8"};
+    }
+    if (!message.has_header()) {
         return Error{"the first record is no header"};
     }
     LogHeader header;
@@ -207,8 +221,8 @@ Result<LogHeader> decode_header(std::string_view payload) {
                      " is not known here (up to " + std::to_string(kLogFormatVersion) +
                      "); read it with a newer lockwind"};
     }
-    if (Status status = check(header.config); !status) {
-        return Error{"header: " + status.error().message};
+    if (Status status = check_readable(header.config); !status) {
+        return status.error();
     }
     if (header.input_size_bytes < 1 || header.input_size_bytes > kInputSizeBytesMax) {
         return Error{"header: input_size_bytes is " + std::to_string(header.input_size_bytes) +

@@ -17,8 +17,11 @@ class MatchConfig;
 /// Payloads of log records. The only code of the layer that sees log.pb.h, with log_export.
 
 void encode_config(const MatchConfig& config, log_format::MatchConfig& out);
-/// Checks nothing: see check(MatchConfig).
+/// Checks nothing: see check_readable.
 MatchConfig decode_config(const log_format::MatchConfig& message);
+/// The settings that readers count and divide by. Less than a session asks for: what a match of
+/// another version was run with can still be read and compared.
+Status check_readable(const MatchConfig& config);
 
 std::string encode_header(const LogHeader& header);
 /// An Error says which rule the payload breaks.
