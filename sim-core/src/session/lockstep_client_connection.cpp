@@ -81,7 +81,9 @@ void LockstepClient::Player::created(std::uint64_t hash, std::uint32_t input_siz
 
 void LockstepClient::Player::on_chunk(const Chunk& chunk) {
     BlobReceiver::Outcome outcome = snapshot_receiver_.receive(chunk);
-    if (outcome.violation) {
+    // An unsolicited one may be of a connection that is given up: the Welcome says which one
+    // counts.
+    if (outcome.violation == Violation::chunk_malformed) {
         counters.violations.add(*outcome.violation);
     }
     if (outcome.ack) {

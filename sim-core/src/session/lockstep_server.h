@@ -74,7 +74,8 @@ struct SlotStatus {
 struct LockstepServerCounters {
     std::uint64_t late_inputs = 0; // arrived after their tick was confirmed without them
     std::uint64_t substituted_inputs = 0;
-    std::uint64_t stalls = 0; // ticks that were due before their inputs were there
+    std::uint64_t stalls =
+        0; // times that a due tick's inputs were not there; catching up is no other
     std::uint64_t stall_ms_max = 0;
     std::uint64_t drops = 0;
     std::uint64_t reconnects = 0;

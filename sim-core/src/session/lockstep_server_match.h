@@ -135,6 +135,7 @@ private:
 
     bool stalled_ = false;
     bool stall_policy_applied_ = false;
+    bool behind_ = false; // ticks wait only because an earlier one did
     bool paused_ = false;
     std::uint64_t stall_began_us_ = 0;
     std::uint64_t nobody_since_us_ = 0; // 0: somebody is there

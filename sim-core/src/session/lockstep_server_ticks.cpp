@@ -104,7 +104,7 @@ void LockstepServer::Match::stall(Tick tick) {
         stalled_ = true;
         stall_policy_applied_ = false;
         stall_began_us_ = now_us_;
-        ++counters.stalls;
+        counters.stalls += behind_ ? 0U : 1U;
     }
     if (!stall_policy_applied_ &&
         now_us_ - stall_began_us_ >= settings.stall_timeout_ms * kUsPerMs) {
@@ -134,6 +134,7 @@ void LockstepServer::Match::apply_stall_policy(Tick tick) {
 
 void LockstepServer::Match::finish_stall(Tick tick) {
     if (!stalled_) {
+        behind_ = behind_ && now_us_ >= clock_.due_us(tick + 1);
         return;
     }
     const std::uint64_t stall_ms = (now_us_ - stall_began_us_) / kUsPerMs;
@@ -146,6 +147,7 @@ void LockstepServer::Match::finish_stall(Tick tick) {
                tick,
                "the clock stood still for " + std::to_string(pause_us) + " us");
     }
+    behind_ = !paused_;
     stalled_ = false;
     paused_ = false;
 }

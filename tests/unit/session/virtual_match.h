@@ -82,11 +82,13 @@ public:
             ++lost;
             return;
         }
+        const auto extra = extra_latency_us.find(from == kServerPeer ? to : from);
+        const std::uint64_t latency_us =
+            conditions.latency_us + (extra == extra_latency_us.end() ? 0 : extra->second);
         const bool doubled = best_effort && dice_.chance(conditions.duplicate_per_mille);
         duplicated += doubled ? 1U : 0U;
         for (int copy = 0; copy < (doubled ? 2 : 1); ++copy) {
-            std::uint64_t arrival =
-                now_us + conditions.latency_us + dice_.below(conditions.jitter_us + 1);
+            std::uint64_t arrival = now_us + latency_us + dice_.below(conditions.jitter_us + 1);
             if (best_effort && dice_.chance(conditions.late_per_mille)) {
                 arrival += 300'000;
                 ++late;
@@ -116,8 +118,9 @@ public:
     }
 
     Conditions conditions;
-    std::vector<PeerId> peers; // all clients
-    std::set<PeerId> cut;      // peers whom nothing reaches, and who reach nobody
+    std::vector<PeerId> peers;                        // all clients
+    std::map<PeerId, std::uint64_t> extra_latency_us; // of a client, one way
+    std::set<PeerId> cut; // peers whom nothing reaches, and who reach nobody
     std::uint64_t lost = 0;
     std::uint64_t duplicated = 0;
     std::uint64_t late = 0;
@@ -291,7 +294,6 @@ public:
     bool keeps_sent = false;
     std::optional<Tick> corrupt_at;
     std::size_t report_size_bytes = 1000;
-    std::size_t snapshot_padding_bytes = 0;
 
 private:
     void execute(const Request& request) {
@@ -306,7 +308,6 @@ private:
             step(*advance);
         } else if (const auto* create = std::get_if<CreateRequest>(&request)) {
             simulation = std::make_unique<CounterSimulation>(create->config.players);
-            simulation->pad_snapshots(snapshot_padding_bytes);
             if (builds_another_world) {
                 simulation->corrupt("");
             }

@@ -1,0 +1,292 @@
+#include "tests/unit/session/virtual_match.h"
+
+namespace lockwind::testing {
+namespace {
+
+/// Two honest players; messages are injected in their or a stranger's name while they play.
+class LockstepHostile : public ::testing::Test {
+protected:
+    LockstepHostile() : match(VirtualMatch::server_settings(2, 200)) {
+        match.add_clients(2);
+        match.clients[1]->keeps_sent = true;
+        EXPECT_TRUE(match.run_to_tick(100));
+        peer = match.clients[1]->peer;
+        slot = match.clients[1]->session.slot();
+        other_slot = match.clients[0]->session.slot();
+        confirmed = match.server.session.confirmed_tick();
+    }
+
+    std::uint64_t counted(Violation violation) const {
+        return match.server.session.counters().violations.of(violation);
+    }
+
+    InputBatch batch(Tick first_tick, std::size_t count, std::uint8_t byte = 0) const {
+        InputBatch batch;
+        batch.slot = slot;
+        batch.first_tick = first_tick;
+        batch.inputs.resize(count);
+        for (SlotInput& input : batch.inputs) {
+            input.bytes[0] = byte;
+        }
+        return batch;
+    }
+
+    /// Whatever happened, the match is played to its end in one chain.
+    void expect_honest_end() {
+        ASSERT_TRUE(match.run_to_end());
+        EXPECT_EQ(match.server.session.end_reason(), EndReason::complete);
+        EXPECT_EQ(match.server.log.size(), 200U);
+        EXPECT_EQ(match.server.session.counters().hashes_agreed, 400U);
+        EXPECT_EQ(match.server.session.counters().drops, 0U);
+        for (const auto& client : match.clients) {
+            for (const auto& [tick, inputs] : match.server.log) {
+                EXPECT_EQ(inputs[client->session.slot()].bytes,
+                          client->inputs_given.at(tick).bytes);
+            }
+        }
+        match.expect_one_chain();
+    }
+
+    VirtualMatch match;
+    PeerId peer = 0;
+    Slot slot = 0;
+    Slot other_slot = 0;
+    Tick confirmed = 0;
+};
+
+TEST_F(LockstepHostile, NobodySpeaksForAnotherSlot) {
+    InputBatch inputs = batch(confirmed + 5, 3, 9);
+    inputs.slot = other_slot;
+    match.inject(peer, inputs);
+    HashReport report;
+    report.slot = other_slot;
+    report.entries = {{confirmed, 1}};
+    match.inject(peer, report);
+    inputs.slot = 77;
+    match.inject(peer, inputs);
+    expect_honest_end();
+    EXPECT_EQ(counted(Violation::wrong_slot), 3U);
+}
+
+TEST_F(LockstepHostile, ReplayedMessagesChangeNothing) {
+    std::size_t replayed = 0;
+    for (const Message& message : match.clients[1]->sent) {
+        if (!std::holds_alternative<End>(message)) {
+            match.inject(peer, message);
+            ++replayed;
+        }
+    }
+    EXPECT_GT(replayed, 100U);
+    expect_honest_end();
+    EXPECT_EQ(match.server.session.counters().late_inputs, 0U);
+    EXPECT_EQ(match.server.session.counters().joins, 2U);
+}
+
+TEST_F(LockstepHostile, TheFirstInputOfATickStays) {
+    // Far enough ahead that it comes before the player's own: then his own is the changed one.
+    const Tick tick = confirmed - 2;
+    match.inject(peer, batch(tick, 2, 0xee));
+    expect_honest_end();
+    EXPECT_EQ(counted(Violation::input_changed), 1U);
+}
+
+TEST_F(LockstepHostile, InputsOutsideTheWindowAreRefused) {
+    match.inject(peer, batch(confirmed + 500, 1));
+    EXPECT_TRUE(match.run_to_tick(confirmed + 5));
+    EXPECT_EQ(counted(Violation::input_too_new), 1U);
+    match.inject(peer, batch(~Tick{0}, 1));
+    match.inject(peer, batch(Tick{1} << 63U, 100));
+    EXPECT_TRUE(match.run_to_tick(confirmed + 10));
+    EXPECT_EQ(counted(Violation::input_too_new), 3U);
+    match.inject(peer, batch(0, 1));
+    EXPECT_TRUE(match.run_to_tick(confirmed + 15));
+    EXPECT_EQ(counted(Violation::input_too_old), 1U);
+    EXPECT_TRUE(match.run_to_tick(150));
+    match.inject(peer, batch(1, 2));
+    expect_honest_end();
+    EXPECT_EQ(counted(Violation::input_too_old), 2U);
+}
+
+TEST_F(LockstepHostile, MalformedInputsAreRefused) {
+    InputBatch inputs = batch(confirmed + 60, 1);
+    inputs.inputs[0].bytes[CounterSimulation::kInputSizeBytes] = 1;
+    match.inject(peer, inputs);
+    match.inject(peer, batch(confirmed + 60, kInputBatchTicksMax + 1));
+    expect_honest_end();
+    EXPECT_EQ(counted(Violation::input_malformed), 2U);
+}
+
+TEST_F(LockstepHostile, EmptyBatchesAreOnlyHeard) {
+    for (int i = 0; i < 100; ++i) {
+        match.inject(peer, batch(~Tick{0}, 0));
+    }
+    expect_honest_end();
+    EXPECT_EQ(match.server.session.counters().violations.total(), 0U);
+}
+
+TEST_F(LockstepHostile, AcknowledgingTheFutureIsRefused) {
+    InputBatch inputs = batch(confirmed + 60, 0);
+    inputs.confirmed_tick = confirmed + 50;
+    match.inject(peer, inputs);
+    inputs.confirmed_tick = ~Tick{0};
+    match.inject(peer, inputs);
+    expect_honest_end();
+    EXPECT_EQ(counted(Violation::ack_unconfirmed), 2U);
+}
+
+TEST_F(LockstepHostile, HashesOfTheFutureAreRefusedAndNoDesync) {
+    HashReport report;
+    report.slot = slot;
+    report.entries = {{confirmed + 50, 1}};
+    match.inject(peer, report);
+    report.entries = {{~Tick{0}, 1}};
+    match.inject(peer, report);
+    expect_honest_end();
+    EXPECT_EQ(counted(Violation::hash_unconfirmed), 2U);
+    EXPECT_EQ(match.server.session.counters().desyncs, 0U);
+}
+
+TEST_F(LockstepHostile, MalformedHashReportsAreRefused) {
+    HashReport report;
+    report.slot = slot;
+    report.entries = {{5, 1}, {5, 2}};
+    match.inject(peer, report);
+    report.entries = {{0, 1}};
+    match.inject(peer, report);
+    report.entries.assign(kHashReportEntriesMax + 1, {1, 1});
+    match.inject(peer, report);
+    expect_honest_end();
+    EXPECT_EQ(counted(Violation::hash_malformed), 3U);
+}
+
+TEST_F(LockstepHostile, HashesOfLongAgreedTicksAreNotLookedAt) {
+    HashReport report;
+    report.slot = slot;
+    report.entries = {{5, 12345}};
+    match.inject(peer, report);
+    expect_honest_end();
+    EXPECT_EQ(match.server.session.counters().violations.total(), 0U);
+    EXPECT_EQ(match.server.session.counters().desyncs, 0U);
+}
+
+TEST_F(LockstepHostile, StrangersAreNotListenedTo) {
+    match.inject(4711, batch(confirmed + 60, 1));
+    match.inject(4711, Ready{0, 0});
+    match.inject(4711, End{EndReason::left, 0, 1, ""});
+    match.inject(kAllPeers, Hello{kProtocolVersion, "v1", "", 5, 1});
+    match.inject(kServerPeer, Hello{kProtocolVersion, "v1", "", 5, 1});
+    expect_honest_end();
+    EXPECT_EQ(counted(Violation::unknown_peer), 5U);
+}
+
+TEST_F(LockstepHostile, UnsolicitedChunksAreNotTaken) {
+    Chunk chunk;
+    chunk.kind = BlobKind::desync_report;
+    chunk.transfer = 1;
+    chunk.count = chunk_count(kBlobSizeBytesMax);
+    chunk.blob_size_bytes = kBlobSizeBytesMax;
+    chunk.bytes.resize(kChunkSizeBytesMax);
+    match.inject(peer, chunk);
+    chunk.kind = BlobKind::snapshot;
+    match.inject(peer, chunk);
+    match.inject(peer, ChunkAck{1, 0});
+    match.inject(peer, ChunkAck{0xffffffff, 0xffffffff});
+    expect_honest_end();
+    EXPECT_EQ(counted(Violation::chunk_unsolicited), 2U);
+}
+
+TEST_F(LockstepHostile, TheServersOwnMessagesAreNoClients) {
+    match.inject(peer, Welcome{});
+    match.inject(peer, Refuse{});
+    match.inject(peer, Confirmation{});
+    match.inject(peer, DesyncQuery{});
+    expect_honest_end();
+    EXPECT_EQ(counted(Violation::unexpected_message), 4U);
+}
+
+TEST_F(LockstepHostile, RepeatedAndBadHellosDisturbNobody) {
+    match.inject(peer, Hello{kProtocolVersion, "v1", "", 101, 1});   // doubled
+    match.inject(4711, Hello{kProtocolVersion, "v1", "", 101, 1});   // another's token
+    match.inject(4711, Hello{kProtocolVersion, "v1", "", 5, 1});     // full
+    match.inject(4711, Hello{kProtocolVersion + 1, "v1", "", 5, 1}); // version
+    match.inject(4711, Hello{kProtocolVersion, "v0", "", 5, 1});     // version
+    match.inject(4711, Hello{kProtocolVersion, "v1", "", 0, 1});     // token
+    expect_honest_end();
+    EXPECT_EQ(counted(Violation::bad_hello), 3U);
+    EXPECT_EQ(match.server.session.counters().joins, 2U);
+    EXPECT_EQ(match.server.session.counters().reconnects, 0U);
+}
+
+TEST(LockstepHostileServer, ClientsIgnoreWhatNoServerSays) {
+    LockstepServerSettings settings = VirtualMatch::server_settings(2, 200);
+    VirtualMatch match(settings);
+    match.add_clients(2);
+    ASSERT_TRUE(match.run_to_tick(100));
+    LockstepClient& client = match.clients[0]->session;
+    const auto tell = [&](PeerId from, const Message& message) {
+        client.receive(from, message, match.now_us);
+    };
+    Confirmation confirmation;
+    confirmation.acks.resize(2);
+    confirmation.acks[0].attached = confirmation.acks[1].attached = true;
+    confirmation.confirmed_tick = match.server.session.confirmed_tick();
+    confirmation.first_tick = client.confirmed_tick();
+    confirmation.ticks.resize(1);
+    tell(0, confirmation); // a tick without inputs
+    confirmation.ticks[0].inputs.resize(2);
+    confirmation.ticks[0].inputs[0].bytes[0] = 0x77;
+    tell(0, confirmation); // other inputs for a confirmed tick
+    confirmation.first_tick = ~Tick{0};
+    tell(0, confirmation);
+    confirmation.first_tick = 0;
+    tell(0, confirmation);
+    confirmation.acks.resize(1);
+    tell(0, confirmation);
+    confirmation.acks.resize(2);
+    confirmation.ticks.clear();
+    confirmation.confirmed_tick = ~Tick{0};
+    tell(0, confirmation);
+    EXPECT_EQ(client.counters().violations.of(Violation::confirmation_malformed), 5U);
+    EXPECT_EQ(client.counters().violations.of(Violation::confirmation_changed), 1U);
+    tell(match.clients[1]->peer, End{EndReason::complete, 0, 0, ""});
+    EXPECT_EQ(client.counters().violations.of(Violation::unknown_peer), 1U);
+    tell(0, DesyncQuery{5, ~Tick{0}, 0, 0});
+    tell(0, DesyncQuery{50, 50, 0, 0});
+    tell(0, Hello{});
+    EXPECT_EQ(client.counters().violations.of(Violation::unexpected_message), 3U);
+    tell(0, Welcome{});
+    tell(0, Refuse{});
+    tell(0, End{EndReason::dropped, 0, 99, "of another connection"});
+    ASSERT_TRUE(match.run_to_end());
+    EXPECT_EQ(match.server.session.end_reason(), EndReason::complete);
+    EXPECT_EQ(match.server.session.counters().hashes_agreed, 400U);
+    EXPECT_EQ(client.counters().reconnects, 0U);
+}
+
+TEST(LockstepHostileServer, AnImpossibleMatchIsLeft) {
+    const auto ends_with = [](const Welcome& welcome) {
+        LockstepClient client(VirtualMatch::client_settings(1));
+        client.update(1);
+        client.receive(kServerPeer, welcome, 2);
+        EXPECT_TRUE(client.ended());
+        EXPECT_EQ(client.end_reason(), EndReason::failed);
+        return client.end_message();
+    };
+    Welcome welcome;
+    welcome.sim_version = "v1";
+    welcome.config = VirtualMatch::server_settings(2, 10).config;
+    welcome.slot = 2;
+    EXPECT_EQ(ends_with(welcome), "the server's Welcome names no slot of the match");
+    welcome.slot = 0;
+    welcome.config.tick_rate_hz = 0;
+    EXPECT_EQ(ends_with(welcome), "match config: tick_rate_hz is 0; allowed are 1 to 1000");
+    welcome.config.tick_rate_hz = 60;
+    welcome.config.mode = "chess";
+    EXPECT_EQ(ends_with(welcome), "match config: mode is \"chess\"; supported is \"lockstep\"");
+    welcome.config.mode = "lockstep";
+    welcome.sim_version = "v9";
+    EXPECT_EQ(ends_with(welcome), "the server simulates with version v9, this client with v1");
+}
+
+} // namespace
+} // namespace lockwind::testing
