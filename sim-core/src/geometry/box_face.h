@@ -12,7 +12,7 @@ struct IncidentBox {
     const std::int32_t* half_extents;
     std::int32_t axes[9];              // columns: the incident box's axes, Q2.30
     std::int32_t centre[3];            // Q9.22
-    std::int32_t companion_separation; // Q9.22, see pair_kernels.h
+    std::int32_t companion_separation; // Q9.22, see Midway
 };
 
 /// A corner of the incident face's part above the reference face. Its feature is the pair of edges

@@ -119,7 +119,7 @@ bool parallel_edges(const Boxes& boxes, int edges) {
 /// Face contact with the face that `axis` (1 .. 6) names.
 void clip_face(const Boxes& boxes, std::uint32_t axis, FaceContact& face) {
     IncidentBox incident{};
-    incident.companion_separation = companion_separation(boxes.a, boxes.b);
+    incident.companion_separation = midway(boxes.a, boxes.b).companion_separation();
     if (axis < kFirstFaceB) {
         incident.reference_half_extents = boxes.a.size;
         incident.half_extents = boxes.b.size;
@@ -161,6 +161,7 @@ void emit_face(const Boxes& boxes,
     const int u = (w + 1) % 3;
     const int v = (w + 2) % 3;
     const std::int32_t side = face.positive ? 1 : -1;
+    const Midway between = on_a ? midway(boxes.a, boxes.b) : midway(boxes.b, boxes.a);
     axis_of(reference, w, out.normal);
     for (std::int32_t& component : out.normal) {
         component *= on_a ? side : -side;
@@ -172,7 +173,7 @@ void emit_face(const Boxes& boxes,
         point.separation = raw_saturate<std::int32_t>(from.separation);
         local[u] = static_cast<std::int32_t>(from.place[0]);
         local[v] = static_cast<std::int32_t>(from.place[1]);
-        local[w] = side * (reference.size[w] + (point.separation >> 1));
+        local[w] = side * (reference.size[w] + between.from_first(point.separation));
         if (on_a) {
             local_b_of(boxes, point.local_a, point.local_b);
         } else {
@@ -251,16 +252,20 @@ bool emit_edges(const Boxes& boxes, int edges, ManifoldGeometry& out) {
     if (magnitude(on_a) > boxes.a.size[pair.i] || magnitude(on_b) > boxes.b.size[pair.j]) {
         return false;
     }
+    std::int64_t from[3];
     std::int32_t gap[3];
-    std::int32_t middle[3];
     for (int axis = 0; axis < 3; ++axis) {
-        const std::int64_t from = pair.on_a[axis] + (axis == pair.i ? on_a : 0);
+        from[axis] = pair.on_a[axis] + (axis == pair.i ? on_a : 0);
         const std::int64_t to = pair.on_b[axis] + round_unit_wide(on_b * direction_b[axis]);
-        gap[axis] = raw_saturate<std::int32_t>(to - from);
-        middle[axis] = static_cast<std::int32_t>((from + to) >> 1);
+        gap[axis] = raw_saturate<std::int32_t>(to - from[axis]);
     }
     ManifoldPoint& point = out.points[0];
     point.separation = round_unit(dot_wide(gap, pair.normal));
+    const std::int32_t lift = midway(boxes.a, boxes.b).from_first(point.separation);
+    std::int32_t middle[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        middle[axis] = static_cast<std::int32_t>(from[axis]) + scale(lift, pair.normal[axis]);
+    }
     for (int axis = 0; axis < 3; ++axis) {
         point.local_a[axis] = middle[axis];
     }
@@ -359,7 +364,9 @@ void emit_deep_corner(const Boxes& boxes,
         }
     }
     point.separation = raw_saturate<std::int32_t>(separation);
-    const std::int32_t lift = positive ? -(point.separation >> 1) : point.separation >> 1;
+    const Midway between = on_a ? midway(boxes.b, boxes.a) : midway(boxes.a, boxes.b);
+    const std::int32_t way = between.from_first(point.separation);
+    const std::int32_t lift = positive ? -way : way;
     if (on_a) {
         rotate(boxes.cosines, corner, point.local_a);
         for (int component = 0; component < 3; ++component) {

@@ -134,7 +134,7 @@ Span clip_to_face(const Segment& segment, int face) {
 class Contact {
 public:
     Contact(const ShapeInstance& box, const ShapeInstance& capsule, const std::int32_t* delta)
-        : box_(box), capsule_(capsule), delta_(delta) {}
+        : box_(box), capsule_(capsule), delta_(delta), midway_(midway(box, capsule)) {}
 
     void add(const std::int32_t normal[3],
              const std::int32_t middle[3],
@@ -157,12 +157,13 @@ public:
         ++out.point_count;
     }
 
-    std::int32_t companion_separation_max() const { return companion_separation(box_, capsule_); }
+    const Midway& between() const { return midway_; }
 
 private:
     const ShapeInstance& box_;
     const ShapeInstance& capsule_;
     const std::int32_t* delta_;
+    Midway midway_;
 };
 
 /// Both ends of the segment's part above the face, where the nearer one is as near as `separation`
@@ -193,7 +194,7 @@ bool touch_face(const Contact& contact,
     const auto tag = kFaceFeature + static_cast<std::uint32_t>(face) * 4 + (positive ? 2U : 0U);
     const bool single = span.high - std::int64_t{span.low} <= kLinearSlop;
     for (int end = 0; end < 2; ++end) {
-        if (separations[end] > contact.companion_separation_max() ||
+        if (separations[end] > contact.between().companion_separation() ||
             (single && separations[end] != nearer)) {
             continue;
         }
@@ -201,7 +202,8 @@ bool touch_face(const Contact& contact,
         for (int axis = 0; axis < 3; ++axis) {
             middle[axis] = static_cast<std::int32_t>(segment.at(axis, ends[end]));
         }
-        const std::int32_t height = segment.half_extents[face] + (separations[end] >> 1);
+        const std::int32_t height =
+            segment.half_extents[face] + contact.between().from_first(separations[end]);
         middle[face] = positive ? height : -height;
         contact.add(normal, middle, separations[end], tag + static_cast<std::uint32_t>(end), out);
     }
@@ -290,9 +292,11 @@ void touch_edge(const Contact& contact,
     const std::int64_t square = (std::int64_t{1} << 60) - cosine * cosine;
     const auto along = static_cast<std::int32_t>(clamped<std::int64_t>(
         along_segment / (square >> kUnitFraction), -segment.half, segment.half));
+    const std::int32_t way_back =
+        segment.radius + separation - contact.between().from_first(separation);
     std::int32_t middle[3];
     for (int axis = 0; axis < 3; ++axis) {
-        const std::int32_t back = scale((separation >> 1) + segment.radius, deep.edge_normal[axis]);
+        const std::int32_t back = scale(way_back, deep.edge_normal[axis]);
         middle[axis] = static_cast<std::int32_t>(segment.at(axis, along)) - back;
     }
     contact.add(deep.edge_normal,
@@ -322,7 +326,8 @@ void touch_deep(const Contact& contact, const Segment& segment, ManifoldGeometry
     for (int axis = 0; axis < 3; ++axis) {
         middle[axis] = static_cast<std::int32_t>(segment.at(axis, along));
     }
-    const std::int32_t height = segment.half_extents[deep.face] + (separation >> 1);
+    const std::int32_t height =
+        segment.half_extents[deep.face] + contact.between().from_first(separation);
     middle[deep.face] = positive ? height : -height;
     contact.add(normal, middle, separation, kNearestFeature, out);
 }
@@ -368,9 +373,11 @@ void collide_box_capsule(const ShapeInstance& box,
         touch_face(contact, segment, face, separation, out)) {
         return;
     }
+    const std::int32_t way_back =
+        segment.radius + separation - contact.between().from_first(separation);
     std::int32_t middle[3];
     for (int axis = 0; axis < 3; ++axis) {
-        const std::int32_t back = scale((separation >> 1) + segment.radius, normal[axis]);
+        const std::int32_t back = scale(way_back, normal[axis]);
         middle[axis] = static_cast<std::int32_t>(segment.at(axis, along)) - back;
     }
     contact.add(normal, middle, separation, kNearestFeature, out);

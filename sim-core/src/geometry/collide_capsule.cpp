@@ -128,7 +128,7 @@ void emit_between(const CapsulePair& pair,
     const std::int32_t radius = pair.a.size[0];
     point.separation = round_unit(dot_wide(out.normal, gap)) - radius - pair.b.size[0];
     point.feature = feature;
-    const std::int32_t half_way = radius + (point.separation >> 1);
+    const std::int32_t half_way = radius + midway(pair.a, pair.b).from_first(point.separation);
     std::int32_t middle[3];
     for (int axis = 0; axis < 3; ++axis) {
         // Half the gap's part across the normal is split between the two surfaces.

@@ -11,9 +11,10 @@ void emit_plane_point(const ShapeInstance& plane,
                       const std::int32_t from_b[3],
                       std::int32_t separation,
                       ManifoldGeometry& out) {
+    const std::int32_t below = separation - midway(plane, b).from_first(separation);
     std::int32_t middle[3];
     for (int axis = 0; axis < 3; ++axis) {
-        middle[axis] = delta[axis] + from_b[axis] - scale(separation >> 1, out.normal[axis]);
+        middle[axis] = delta[axis] + from_b[axis] - scale(below, out.normal[axis]);
     }
     ManifoldPoint& point = out.points[out.point_count];
     place_point(plane, b, delta, middle, point);

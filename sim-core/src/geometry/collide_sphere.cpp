@@ -30,7 +30,7 @@ void emit_round(const ShapeInstance& a,
     if (separation > kSpeculativeMargin) {
         return;
     }
-    const std::int32_t reach = contact.radius_a + (separation >> 1);
+    const std::int32_t reach = contact.radius_a + midway(a, sphere).from_first(separation);
     std::int32_t middle[3];
     for (int axis = 0; axis < 3; ++axis) {
         out.normal[axis] = contact.normal[axis];
@@ -133,9 +133,10 @@ void collide_box_sphere(const ShapeInstance& box,
         return;
     }
     ManifoldPoint& point = out.points[0];
+    const std::int32_t lift = midway(box, sphere).from_first(separation);
     std::int32_t from_sphere[3];
     for (int axis = 0; axis < 3; ++axis) {
-        point.local_a[axis] = surface[axis] + scale(separation >> 1, normal[axis]);
+        point.local_a[axis] = surface[axis] + scale(lift, normal[axis]);
         from_sphere[axis] = point.local_a[axis] - centre[axis];
     }
     rotate(box.rotation, from_sphere, point.local_b);

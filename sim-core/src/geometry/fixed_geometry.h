@@ -65,8 +65,8 @@ constexpr std::uint64_t squared_length(const std::int32_t v[3]) {
     return sum;
 }
 
-/// Length of v (below 512 m) rounded down, and its unit vector (each component within 2 ulp); 0 leaves `unit`
-/// alone. The vector is first scaled to 30 bits, so that short ones lose no digits.
+/// Length of v (below 512 m) rounded down, and its unit vector (each component within 2 ulp); 0
+/// leaves `unit` alone. The vector is first scaled to 30 bits, so that short ones lose no digits.
 inline std::int32_t normalise(const std::int32_t v[3], std::int32_t unit[3]) {
     const auto bits =
         static_cast<std::uint32_t>(magnitude(v[0]) | magnitude(v[1]) | magnitude(v[2]));

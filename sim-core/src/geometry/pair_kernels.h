@@ -4,6 +4,8 @@
 #include "geometry/fixed_geometry.h"
 #include "geometry/rotation.h"
 
+#include <limits>
+
 namespace lockwind {
 
 // One kernel per pair of types; the first shape is the one whose type comes later in ShapeType.
@@ -47,23 +49,48 @@ void collide_plane_box(const ShapeInstance& plane,
                        const std::int32_t delta[3],
                        ManifoldGeometry& out);
 
-/// Half the way across of a box or capsule along its longest axis.
+/// Distance from the centre to the far end of the longest axis, Q9.22; of a plane, more than any.
 inline std::int32_t reach_of(const ShapeInstance& shape) {
     const std::int32_t* size = shape.size;
-    if (shape.type == ShapeType::capsule) {
+    switch (shape.type) {
+    case ShapeType::sphere:
+        return size[0];
+    case ShapeType::capsule:
         return size[0] + size[1];
+    case ShapeType::box: {
+        const std::int32_t longer = size[0] > size[1] ? size[0] : size[1];
+        return longer > size[2] ? longer : size[2];
     }
-    const std::int32_t longer = size[0] > size[1] ? size[0] : size[1];
-    return longer > size[2] ? longer : size[2];
+    case ShapeType::plane:
+        break;
+    }
+    return std::numeric_limits<std::int32_t>::max();
 }
 
-/// A face that touches brings its other points along up to this separation, so that a recycled
-/// manifold still holds when the body rocks. Farther ones would only stretch the solver's arms: a
-/// mid-surface point stays within 1.25 bounding radii (and half the margin) of both centres.
-inline std::int32_t companion_separation(const ShapeInstance& a, const ShapeInstance& b) {
-    const std::int32_t reach_a = reach_of(a);
-    const std::int32_t reach_b = reach_of(b);
-    return kSpeculativeMargin + ((reach_a < reach_b ? reach_a : reach_b) >> 1);
+/// Where on the line between two surfaces their common point lies: halfway, but no farther from the
+/// smaller shape's surface than a quarter of its reach (and half the margin), so that the solver's
+/// arms stay within 1.25 bounding radii however far the surfaces are apart or overlap. Where on the
+/// line it lies does not change a torque about the normal's impulse.
+struct Midway {
+    std::int32_t limit;
+    bool first_is_smaller;
+
+    std::int32_t from_first(std::int32_t separation) const {
+        const std::int32_t half = separation >> 1;
+        const std::int32_t bounded = clamped(half, -limit, limit);
+        return bounded == half || first_is_smaller ? bounded : separation - bounded;
+    }
+    /// Up to here a touching face brings its farther points along, so that a recycled manifold
+    /// still holds when the body rocks.
+    std::int32_t companion_separation() const { return 2 * limit; }
+};
+
+inline Midway midway(const ShapeInstance& first, const ShapeInstance& second) {
+    const std::int32_t reach_first = reach_of(first);
+    const std::int32_t reach_second = reach_of(second);
+    const bool first_is_smaller = reach_first < reach_second;
+    const std::int32_t smaller = first_is_smaller ? reach_first : reach_second;
+    return {(kSpeculativeMargin >> 1) + (smaller >> 2), first_is_smaller};
 }
 
 /// World direction of the body's axis `column`.
