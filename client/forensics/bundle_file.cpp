@@ -1,6 +1,7 @@
 #include "forensics/bundle.h"
 #include "forensics/forensics_codec.h"
 #include "forensics/snapshot_file.h"
+#include "log/quiet_parse.h"
 #include "session/match_config.h"
 
 #include <unistd.h>
@@ -35,7 +36,7 @@ Status read_file(const std::string& path, FileKind kind, google::protobuf::Messa
     if (file.value().next(payload) != RecordRead::record) {
         return Error{path + ": torn or damaged: nothing can be read"};
     }
-    if (!message.ParseFromString(payload)) {
+    if (!parse_quietly(payload, message)) {
         return Error{path + ": its record does not parse"};
     }
     std::string more;

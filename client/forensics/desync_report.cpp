@@ -1,6 +1,7 @@
 #include "forensics/desync_report.h"
 
 #include "forensics/forensics_codec.h"
+#include "log/quiet_parse.h"
 
 #include <utility>
 
@@ -107,7 +108,7 @@ Result<DesyncReport> decode_desync_report(std::span<const std::byte> bytes) {
         return Error{"desync report: " + std::to_string(bytes.size()) + " bytes"};
     }
     forensics_format::DesyncReport message;
-    if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
+    if (!parse_quietly({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, message)) {
         return Error{"desync report: does not parse"};
     }
     return decode_report(message);

@@ -1,5 +1,6 @@
 #include "forensics/forensics_codec.h"
 #include "forensics/trace.h"
+#include "log/quiet_parse.h"
 
 #include <unistd.h>
 #include <utility>
@@ -59,7 +60,7 @@ Result<TraceReader> TraceReader::open(const std::string& path) {
     }
     std::string payload;
     forensics_format::TraceRecord record;
-    if (file.value().next(payload) != RecordRead::record || !record.ParseFromString(payload) ||
+    if (file.value().next(payload) != RecordRead::record || !parse_quietly(payload, record) ||
         !record.has_header()) {
         return Error{path + ": the header is not whole: nothing can be read"};
     }
@@ -88,7 +89,7 @@ Result<std::optional<TraceEntry>> TraceReader::next() {
         break;
     }
     forensics_format::TraceRecord record;
-    if (!record.ParseFromString(payload_)) {
+    if (!parse_quietly(payload_, record)) {
         return damaged("a record that does not parse");
     }
     if (record.has_end() && record.end().entries() == entries_) {

@@ -1,6 +1,7 @@
 #include "log/log_codec.h"
 
 #include "log.pb.h"
+#include "log/quiet_parse.h"
 #include "session/match_config.h"
 
 #include <algorithm>
@@ -203,7 +204,7 @@ std::string encode_header(const LogHeader& header) {
 
 Result<LogHeader> decode_header(std::string_view payload) {
     log_format::Record message;
-    if (!message.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
+    if (!parse_quietly(payload, message)) {
         return Error{"the header does not parse; its texts must be UTF-8"};
     }
     if (!message.has_header()) {
@@ -239,7 +240,7 @@ std::string encode_record(const LogRecord& record, std::uint32_t input_size_byte
 
 Result<LogRecord> decode_record(std::string_view payload, const LogHeader& header) {
     log_format::Record message;
-    if (!message.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
+    if (!parse_quietly(payload, message)) {
         return Error{"a record that does not parse"};
     }
     switch (message.kind_case()) {

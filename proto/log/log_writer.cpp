@@ -1,5 +1,6 @@
 #include "log/log_writer.h"
 
+#include "codec/utf8.h"
 #include "log/log_codec.h"
 #include "log/state_pack.h"
 
@@ -14,8 +15,18 @@ LogWriter::LogWriter(RecordWriter file, const LogHeader& header)
 
 Result<std::unique_ptr<LogWriter>> LogWriter::create(const std::string& path,
                                                      const LogHeader& header) {
+    for (const std::string* text : {&header.sim_version,
+                                    &header.build_info,
+                                    &header.config.match,
+                                    &header.config.mode,
+                                    &header.config.scene_name,
+                                    &header.config.scene_text}) {
+        if (!is_utf8(*text)) {
+            return Error{path + ": the match's settings or its scene are not UTF-8 text"};
+        }
+    }
     const std::string payload = encode_header(header);
-    // What a reader would refuse (a scene text that is not UTF-8, say) is refused before the match.
+    // What a reader would refuse is refused before the match.
     if (const Result<LogHeader> checked = decode_header(payload); !checked) {
         return Error{path + ": " + checked.error().message};
     }
