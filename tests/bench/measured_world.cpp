@@ -1,0 +1,120 @@
+#include "measured_world.h"
+
+#include "dynamics/contact.h"
+
+#include "lockwind/player_input.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace lockwind::bench {
+namespace {
+
+std::uint32_t section_index(std::string_view name) {
+    const StateSchema schema = World::schema();
+    for (std::uint32_t index = 0; index < schema.size(); ++index) {
+        if (schema[index].name == name) {
+            return index;
+        }
+    }
+    std::fprintf(stderr, "lockwind-bench: no section %s\n", std::string(name).c_str());
+    std::exit(2);
+}
+
+using Vector = std::array<double, 3>;
+
+double to_double(Real value) {
+    return static_cast<double>(value.raw()) / static_cast<double>(Real(1).raw());
+}
+
+/// Where a point of the body's frame, Q9.22 m, stands in the world.
+Vector world_point(const BodyView& body, const std::int32_t local[3]) {
+    const double scale = static_cast<double>(Length(1).raw());
+    const Vector p{local[0] / scale, local[1] / scale, local[2] / scale};
+    const double x = to_double(body.orientation.x);
+    const double y = to_double(body.orientation.y);
+    const double z = to_double(body.orientation.z);
+    const double w = to_double(body.orientation.w);
+    // p + 2 w (q x p) + 2 q x (q x p)
+    const Vector t{2 * (y * p[2] - z * p[1]), 2 * (z * p[0] - x * p[2]), 2 * (x * p[1] - y * p[0])};
+    return {to_double(body.position.x) + p[0] + w * t[0] + y * t[2] - z * t[1],
+            to_double(body.position.y) + p[1] + w * t[1] + z * t[0] - x * t[2],
+            to_double(body.position.z) + p[2] + w * t[2] + x * t[1] - y * t[0]};
+}
+
+/// Now, m: as it was when the manifold was made, and how far its two anchors have drifted since.
+double separation(const World& world, const Manifold& manifold, std::uint32_t point) {
+    const Vector a = world_point(world.body_at(manifold.row_a), manifold.local_a + 3 * point);
+    const Vector b = world_point(world.body_at(manifold.row_b), manifold.local_b + 3 * point);
+    double drift = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        drift += (b[axis] - a[axis]) * manifold.normal[axis] / static_cast<double>(Unit(1).raw());
+    }
+    return manifold.separation[point] / static_cast<double>(Length(1).raw()) + drift;
+}
+
+} // namespace
+
+MeasuredWorld::MeasuredWorld(const WorldDefinition& definition) {
+    auto created = WorldSimulation::create(definition);
+    if (!created) {
+        std::fprintf(stderr, "lockwind-bench: %s\n", created.error().message.c_str());
+        std::exit(2);
+    }
+    simulation_ = std::move(created).value();
+    PlayerInput input;
+    input.thrust = 32767;
+    input.turn = 8000;
+    input.buttons = PlayerInput::kShoot;
+    inputs_.resize(simulation_->slot_count());
+    for (SlotInput& slot : inputs_) {
+        encode(input, slot);
+        slot.status = InputStatus::confirmed;
+    }
+}
+
+void MeasuredWorld::step() {
+    const Status status = simulation_->advance(inputs_);
+    if (!status && error_.empty()) {
+        error_ = status.error().message;
+    }
+}
+
+std::uint32_t MeasuredWorld::contact_count() const {
+    return simulation_->world().counts().contacts;
+}
+
+std::uint32_t MeasuredWorld::awake_count() const {
+    const World& world = simulation_->world();
+    std::uint32_t count = 0;
+    for (BodyRow row = 0; row < world.body_count(); ++row) {
+        count += world.body_at(row).mode == BodyMode::dynamic ? 1U : 0U;
+    }
+    return count;
+}
+
+double MeasuredWorld::penetration_mm() const {
+    World& world = simulation_->world();
+    const std::span<const std::byte> bytes = world.section_bytes(section_index("manifold"));
+    double lowest = 0;
+    for (std::size_t at = 0; at + sizeof(Manifold) <= bytes.size(); at += sizeof(Manifold)) {
+        Manifold manifold{};
+        std::memcpy(&manifold, bytes.data() + at, sizeof manifold);
+        for (std::uint32_t point = 0; point < manifold.point_count; ++point) {
+            lowest = std::min(lowest, separation(world, manifold, point));
+        }
+    }
+    return 0.0 - 1000.0 * lowest;
+}
+
+std::string MeasuredWorld::hash_text() const {
+    char text[17];
+    std::snprintf(
+        text, sizeof text, "%016llx", static_cast<unsigned long long>(simulation_->state_hash()));
+    return text;
+}
+
+} // namespace lockwind::bench
