@@ -250,7 +250,7 @@ void BodyReader::check_mass(const FieldReader& reader, const BodyDefinition& def
     }
     const double mass = to_double(mass_of(shape.type, size.data(), definition.density));
     if (mass < kMass.min || mass > kMass.max) {
-        const std::string kilograms = text_of(mass) + " kg";
+        const std::string kilograms = text_of(mass, 3) + " kg";
         const std::string limits = "; a dynamic body weighs 0.001 .. 1000000 kg";
         if (reader.has("density")) {
             reader.fail("density", "makes the body weigh " + kilograms + limits);

@@ -18,9 +18,9 @@ std::string with_unit(const std::string& number, std::string_view unit) {
 
 } // namespace
 
-std::string text_of(double value) {
+std::string text_of(double value, int digits) {
     char buffer[40];
-    std::snprintf(buffer, sizeof buffer, "%.7g", value);
+    std::snprintf(buffer, sizeof buffer, "%.*g", digits, value);
     return buffer;
 }
 

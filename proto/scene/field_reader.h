@@ -24,8 +24,8 @@ private:
     std::string message_;
 };
 
-/// The number as a message shows it, to 7 digits.
-std::string text_of(double value);
+/// The number as a message shows it.
+std::string text_of(double value, int digits = 7);
 
 /// What a number may be; both ends belong to it.
 struct Range {

@@ -215,12 +215,11 @@ TEST(SceneErrors, RefuseBodiesThatCannotBe) {
 }
 
 TEST(SceneErrors, RefuseMassesThatADensityMakesAbsurd) {
-    EXPECT_EQ(
-        body_error("body { box { half_extents { x: 100 y: 100 z: 100 } } }"),
-        "t.textproto:2:1: body[0] weighs 2.147484e+09 kg by its density; a dynamic body weighs "
-        "0.001 .. 1000000 kg");
+    EXPECT_EQ(body_error("body { box { half_extents { x: 100 y: 100 z: 100 } } }"),
+              "t.textproto:2:1: body[0] weighs 2.15e+09 kg by its density; a dynamic body weighs "
+              "0.001 .. 1000000 kg");
     EXPECT_EQ(body_error("body { sphere { radius: 0.01 } density: 1 }"),
-              "t.textproto:2:32: body[0].density makes the body weigh 4.188623e-06 kg; a dynamic "
+              "t.textproto:2:32: body[0].density makes the body weigh 4.19e-06 kg; a dynamic "
               "body weighs 0.001 .. 1000000 kg");
     EXPECT_EQ(body_error("body { mode: fixed box { half_extents { x: 100 y: 100 z: 100 } } }"),
               "(no error)");
