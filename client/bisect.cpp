@@ -6,6 +6,7 @@
 #include "program/exit_code.h"
 
 #include <array>
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
@@ -134,7 +135,7 @@ int run_bisect(const ReplayCommandOptions& options) {
     const TemporaryFolder folder;
     const Result<DiffResult> diff =
         folder.path().empty()
-            ? Result<DiffResult>(Error{std::string("no temporary folder: ") + strerror(errno)})
+            ? Result<DiffResult>(Error{std::string("no temporary folder: ") + std::strerror(errno)})
             : bisect(options, folder.path());
     if (!diff) {
         say_error("--bisect: " + diff.error().message);

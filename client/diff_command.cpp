@@ -6,7 +6,6 @@
 #include "program/console.h"
 #include "program/exit_code.h"
 
-#include <cstdio>
 #include <fmt/format.h>
 #include <variant>
 
@@ -37,10 +36,10 @@ Outcome compare_logs(const DiffCommandOptions& options) {
     Comparison comparison{diff_logs(a.value(), b.value()), ""};
     for (LogReader* log : {&a.value(), &b.value()}) {
         if (log->ended() == LogEnd::damaged) {
-            comparison.damage += fmt::format("{}: damaged {}; {} bytes before it are good\n",
-                                             log->path(),
-                                             log->damage(),
-                                             log->valid_bytes());
+            comparison.damage = fmt::format("{}: damaged {}; {} bytes before it are good",
+                                            log->path(),
+                                            log->damage(),
+                                            log->valid_bytes());
         }
     }
     return comparison;
@@ -137,7 +136,9 @@ int run_diff(const DiffCommandOptions& options) {
             return kExitUsage;
         }
     }
-    fmt::print(stderr, "{}", damage);
+    if (!damage.empty()) {
+        say_error(damage);
+    }
     if (!diff.same) {
         return kExitDiverged;
     }

@@ -4,7 +4,6 @@
 #include "program/console.h"
 #include "program/exit_code.h"
 
-#include <cstdio>
 #include <fmt/format.h>
 
 namespace lockwind {

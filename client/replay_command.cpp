@@ -9,9 +9,8 @@
 #include "program/exit_code.h"
 #include "program/progress.h"
 
-#include <cstdio>
 #include <fmt/format.h>
-#include <unistd.h>
+#include <optional>
 
 namespace lockwind {
 namespace {
@@ -19,22 +18,6 @@ namespace {
 int fail(const std::string& message, int exit_code) {
     say_error(message);
     return exit_code;
-}
-
-/// A line that is drawn over on a terminal; elsewhere a line each tenth of the way.
-void show_progress(Tick tick, Tick last) {
-    const bool terminal = ::isatty(STDERR_FILENO) == 1;
-    const Tick tenth = last / 10 + 1;
-    if (terminal) {
-        fmt::print(stderr,
-                   "\rreplay {:>3}% tick {} of {}{}",
-                   tick * 100 / last,
-                   tick,
-                   last,
-                   tick == last ? "\n" : "");
-    } else if (tick / tenth != (tick - 1) / tenth || tick == last) {
-        fmt::print(stderr, "replay: tick {} of {}\n", tick, last);
-    }
 }
 
 Status
@@ -69,8 +52,15 @@ int replay_log(LogReader& log, const ReplayCommandOptions& options) {
     replay_options.to = options.to;
     replay_options.trace = trace ? &trace->value() : nullptr;
     replay_options.trace_states = options.trace_states;
-    replay_options.progress = show_progress;
+    std::optional<Progress> progress;
+    replay_options.progress = [&progress](Tick tick, Tick last) {
+        if (!progress) {
+            progress.emplace("replay", last);
+        }
+        progress->update(tick);
+    };
     const Result<ReplayResult> result = replay(log, *simulation.value(), replay_options);
+    progress.reset();
     if (!result) {
         return fail(result.error().message, kExitUsage);
     }
