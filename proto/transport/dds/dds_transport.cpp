@@ -122,7 +122,7 @@ Status DdsTransport::create_entities(const std::string& partition) {
         }
     }
     for (const Channel channel : kChannels) {
-        const Status flow = create_flow(channel);
+        Status flow = create_flow(channel);
         if (!flow) {
             return flow;
         }

@@ -17,6 +17,15 @@ std::string error_of(std::string_view text) {
     return result.ok() ? "accepted" : result.error().message;
 }
 
+/// `value` is no quantity of `key`, and the error says what would be.
+void expect_refused(const std::string& key, const std::string& value, const char* expected) {
+    std::string text = key;
+    text.append("=").append(value);
+    std::string error = key;
+    error.append(" \"").append(value).append("\": expected a number ").append(expected);
+    EXPECT_EQ(error_of(text), error);
+}
+
 TEST(LinkConditions, ReadsEveryKey) {
     LinkConditions expected;
     expected.latency_us = 40'000;
@@ -54,25 +63,23 @@ TEST(LinkConditions, SaysWhatIsWrong) {
     EXPECT_EQ(error_of("loss=1%,loss=2%"), "link condition loss is given twice");
     EXPECT_EQ(error_of("latency=5ms,jitter=6ms"),
               "jitter is above latency: packets would arrive before they are sent");
-    const std::string time = "expected a number in us, ms or s, at most 60s";
-    const std::string chance = "expected a number in %, at most 100%";
-    for (const std::string value : {"",
-                                    "40",
-                                    "ms",
-                                    "40 ms",
-                                    "-1ms",
-                                    "1e3ms",
-                                    ".5ms",
-                                    "5.ms",
-                                    "1.2.3ms",
-                                    "0.0001ms",
-                                    "40kB/s",
-                                    "60.000001s",
-                                    "99999999999999999999s"}) {
-        EXPECT_EQ(error_of("latency=" + value), "latency \"" + value + "\": " + time);
+    for (const char* value : {"",
+                              "40",
+                              "ms",
+                              "40 ms",
+                              "-1ms",
+                              "1e3ms",
+                              ".5ms",
+                              "5.ms",
+                              "1.2.3ms",
+                              "0.0001ms",
+                              "40kB/s",
+                              "60.000001s",
+                              "99999999999999999999s"}) {
+        expect_refused("latency", value, "in us, ms or s, at most 60s");
     }
-    for (const std::string value : {"2", "101%", "0.00001%", "100.0001%", "2ms", "-2%"}) {
-        EXPECT_EQ(error_of("loss=" + value), "loss \"" + value + "\": " + chance);
+    for (const char* value : {"2", "101%", "0.00001%", "100.0001%", "2ms", "-2%"}) {
+        expect_refused("loss", value, "in %, at most 100%");
     }
     EXPECT_EQ(error_of("bandwidth=0kB/s"),
               "bandwidth \"0kB/s\": expected a number in kB/s or MB/s, at least 1kB/s");

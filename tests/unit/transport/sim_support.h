@@ -18,6 +18,7 @@ inline std::vector<std::string> received(Transport& transport) {
     std::vector<Packet> packets;
     transport.receive(packets);
     std::vector<std::string> texts;
+    texts.reserve(packets.size());
     for (const Packet& packet : packets) {
         texts.push_back(
             std::to_string(packet.from) + ":" +
