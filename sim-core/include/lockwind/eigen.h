@@ -4,11 +4,9 @@
 // where Eigen is used. Hot paths use dot, cross and rotate of vector.h, which round once and are
 // faster.
 //
-// Rules: never `auto` an expression; inverse() and determinant() of large entries overflow;
-// isApprox compares squares, so a precision below 2^-16 has a square of 0 and means equality.
-
-#include "lockwind/trig.h"
-#include "lockwind/vector.h"
+// Rules: never `auto` an expression. inverse() and determinant() of large entries overflow. Eigen's
+// norm, normalize and isApprox go through squares in the scalar: they lose half the digits of short
+// vectors (normalized() of vector.h does not), and isApprox sees no difference below 2^-17.
 
 #include <limits>
 
@@ -79,9 +77,8 @@ struct NumTraits<lockwind::Fixed<Raw, FractionBits>> {
         MulCost = 4
     };
 
-    // Iterations stop at a few epsilons; rounding noise of one rotation is several ulp.
-    static constexpr Scalar epsilon() { return Scalar::from_raw(16); }
-    /// 2^(-3/8 of the fraction): its square, which isApprox multiplies by, still has many ulp.
+    static constexpr Scalar epsilon() { return Scalar::ulp(); }
+    /// 2^-12 in a Real: its square, which isApprox compares with, still has many ulp.
     static constexpr Scalar dummy_precision() {
         return Scalar::from_raw(typename Scalar::raw_type{1}
                                 << (FractionBits - FractionBits * 3 / 8));
@@ -89,6 +86,45 @@ struct NumTraits<lockwind::Fixed<Raw, FractionBits>> {
     static constexpr Scalar highest() { return Scalar::highest(); }
     static constexpr Scalar lowest() { return Scalar::lowest(); }
     static constexpr int digits10() { return std::numeric_limits<Scalar>::digits10; }
+};
+
+/// Not defined: Jacobi's iteration need not end over a fixed-point scalar.
+template <class Raw,
+          int FractionBits,
+          int Rows,
+          int Cols,
+          int Options,
+          int RowsMax,
+          int ColsMax,
+          int Q>
+class JacobiSVD<Matrix<lockwind::Fixed<Raw, FractionBits>, Rows, Cols, Options, RowsMax, ColsMax>,
+                Q>;
+
+/// What FromTwoVectors asks for where its unit vectors, the rows of m, are nearly opposite: column
+/// 2 of V, a unit vector perpendicular to both, within 2^-15.
+template <int Q>
+class JacobiSVD<Matrix<lockwind::Real, 2, 3>, Q> {
+public:
+    JacobiSVD(const Matrix<lockwind::Real, 2, 3>& m, unsigned int /*options*/) {
+        using lockwind::Vec3;
+        const Vec3 a{m(0, 0), m(0, 1), m(0, 2)};
+        const Vec3 b{m(1, 0), m(1, 1), m(1, 2)};
+        Vec3 normal = cross(a, b);
+        // Shorter than this, the rounding of the product bends it more than b differs from -a.
+        if (length(normal) < lockwind::Real(1.0 / (1 << 16))) {
+            const bool along_x = abs(a.x) > lockwind::Real(0.5);
+            normal = cross(a, along_x ? Vec3{0, 1, 0} : Vec3{1, 0, 0});
+        }
+        const Vec3 unit = lockwind::normalized(normal);
+        const Vec3 second = cross(unit, a);
+        v_ << a.x, second.x, unit.x, a.y, second.y, unit.y, a.z, second.z, unit.z;
+    }
+    const Matrix<lockwind::Real, 3, 3>& matrixV() const { // NOLINT(readability-identifier-naming)
+        return v_;
+    }
+
+private:
+    Matrix<lockwind::Real, 3, 3> v_;
 };
 
 } // namespace Eigen
