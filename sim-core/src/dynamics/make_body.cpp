@@ -220,22 +220,23 @@ void fill_inertia(const ShapeDefinition& shape, BodyProperties& properties, Chec
         properties);
     const std::int64_t rho = properties.gyration_radius;
     constexpr std::int64_t kTwice = std::int64_t{2} << InverseInertia::kFraction;
-    // Contact points lie up to a quarter of the radius and half the margin off the surface.
-    const auto is_bearable = [&](std::int64_t arm, std::int64_t numerator, std::int64_t divisor) {
-        const std::int64_t longest = arm + (arm >> 2) + (kSpeculativeMargin >> 1);
-        return multiply_divide(8 * longest, numerator, divisor) < kLeverageMax;
+    // A contact point may lie off the surface by half its separation: half the margin, or for a
+    // point that comes along, which weighs little in friction, a quarter of the longest half axis.
+    constexpr std::int64_t kOff = kSpeculativeMargin >> 1;
+    const std::int64_t radius = properties.bounding_radius;
+    const auto is_bearable = [](std::int64_t arm, std::int64_t numerator, std::int64_t divisor) {
+        return multiply_divide(8 * arm, numerator, divisor) < kLeverageMax;
     };
+    bool bearable = is_bearable(radius + (radius >> 2) + kOff, 1, rho);
     for (int axis = 0; axis < 3; ++axis) {
         const auto k = static_cast<std::int64_t>(moment(axis));
         const std::int64_t ratio = (multiply_divide(rho * rho, kTwice, k) + 1) >> 1;
-        const std::int64_t arm = arm_about(shape, properties, axis);
-        if (ratio > std::int64_t{InverseInertia::highest().raw()} || !is_bearable(arm, 1, rho) ||
-            !is_bearable(arm, rho, k)) {
-            checker.fail("shape", "is too slender; it may be about 15 times as long as thick");
-            return;
-        }
-        properties.inverse_inertia[axis] = static_cast<std::int32_t>(ratio);
+        const std::int64_t arm = arm_about(shape, properties, axis) + radius / 24 + kOff;
+        bearable = bearable && is_bearable(arm, rho, k) &&
+                   ratio <= std::int64_t{InverseInertia::highest().raw()};
+        properties.inverse_inertia[axis] = raw_saturate<std::int32_t>(ratio);
     }
+    checker.require(bearable, "shape", "is too slender; it may be about 10 times as long as thick");
 }
 
 void fill_mass(const BodyDefinition& definition, BodyProperties& properties, Checker& checker) {

@@ -119,7 +119,7 @@ bool parallel_edges(const Boxes& boxes, int edges) {
 /// Face contact with the face that `axis` (1 .. 6) names.
 void clip_face(const Boxes& boxes, std::uint32_t axis, FaceContact& face) {
     IncidentBox incident{};
-    incident.companion_separation = midway(boxes.a, boxes.b).companion_separation();
+    incident.companion_separation = midway(boxes.a, boxes.b).companion_separation;
     if (axis < kFirstFaceB) {
         incident.reference_half_extents = boxes.a.size;
         incident.half_extents = boxes.b.size;

@@ -194,7 +194,7 @@ bool touch_face(const Contact& contact,
     const auto tag = kFaceFeature + static_cast<std::uint32_t>(face) * 4 + (positive ? 2U : 0U);
     const bool single = span.high - std::int64_t{span.low} <= kLinearSlop;
     for (int end = 0; end < 2; ++end) {
-        if (separations[end] > contact.between().companion_separation() ||
+        if (separations[end] > contact.between().companion_separation ||
             (single && separations[end] != nearer)) {
             continue;
         }

@@ -4,6 +4,7 @@
 #include "geometry/fixed_geometry.h"
 #include "geometry/rotation.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace lockwind {
@@ -49,48 +50,54 @@ void collide_plane_box(const ShapeInstance& plane,
                        const std::int32_t delta[3],
                        ManifoldGeometry& out);
 
-/// Distance from the centre to the far end of the longest axis, Q9.22; of a plane, more than any.
-inline std::int32_t reach_of(const ShapeInstance& shape) {
+/// Half the longest and shortest way across, Q9.22; of a plane, more than any.
+struct Girth {
+    std::int32_t longest;
+    std::int32_t shortest;
+};
+
+inline Girth girth_of(const ShapeInstance& shape) {
+    constexpr std::int32_t kEndless = std::numeric_limits<std::int32_t>::max();
     const std::int32_t* size = shape.size;
     switch (shape.type) {
     case ShapeType::sphere:
-        return size[0];
+        return {size[0], size[0]};
     case ShapeType::capsule:
-        return size[0] + size[1];
-    case ShapeType::box: {
-        const std::int32_t longer = size[0] > size[1] ? size[0] : size[1];
-        return longer > size[2] ? longer : size[2];
-    }
+        return {size[0] + size[1], size[0]};
+    case ShapeType::box:
+        return {std::max({size[0], size[1], size[2]}), std::min({size[0], size[1], size[2]})};
     case ShapeType::plane:
         break;
     }
-    return std::numeric_limits<std::int32_t>::max();
+    return {kEndless, kEndless};
 }
 
-/// Where on the line between two surfaces their common point lies: halfway, but no farther from the
-/// smaller shape's surface than a quarter of its reach (and half the margin), so that the solver's
-/// arms stay within 1.25 bounding radii however far the surfaces are apart or overlap. Where on the
-/// line it lies does not change a torque about the normal's impulse.
+/// Where on the line between two surfaces their common point lies: halfway; but where they overlap,
+/// no deeper below the thinner shape's surface than a quarter of its half thickness, so that
+/// however deep they overlap the solver's arms are not longer than the bodies (make_body relies on
+/// it). Where on the line it lies does not change the torque of an impulse along the normal.
 struct Midway {
-    std::int32_t limit;
-    bool first_is_smaller;
+    std::int32_t depth_max;
+    bool first_is_thinner;
+    /// Up to here a touching face brings its farther points along, so that a recycled manifold
+    /// still holds when the body rocks.
+    std::int32_t companion_separation;
 
     std::int32_t from_first(std::int32_t separation) const {
         const std::int32_t half = separation >> 1;
-        const std::int32_t bounded = clamped(half, -limit, limit);
-        return bounded == half || first_is_smaller ? bounded : separation - bounded;
+        if (half >= -depth_max) {
+            return half;
+        }
+        return first_is_thinner ? -depth_max : separation + depth_max;
     }
-    /// Up to here a touching face brings its farther points along, so that a recycled manifold
-    /// still holds when the body rocks.
-    std::int32_t companion_separation() const { return 2 * limit; }
 };
 
 inline Midway midway(const ShapeInstance& first, const ShapeInstance& second) {
-    const std::int32_t reach_first = reach_of(first);
-    const std::int32_t reach_second = reach_of(second);
-    const bool first_is_smaller = reach_first < reach_second;
-    const std::int32_t smaller = first_is_smaller ? reach_first : reach_second;
-    return {(kSpeculativeMargin >> 1) + (smaller >> 2), first_is_smaller};
+    const Girth a = girth_of(first);
+    const Girth b = girth_of(second);
+    return {std::min(a.shortest, b.shortest) >> 2,
+            a.shortest < b.shortest,
+            kSpeculativeMargin + (std::min(a.longest, b.longest) >> 1)};
 }
 
 /// World direction of the body's axis `column`.
