@@ -34,7 +34,7 @@ void turn_of(const StepConstants& constants,
     for (int axis = 0; axis < 3; ++axis) {
         const std::int64_t arc =
             std::clamp(divide(travel[axis], constants.per_substep_rate, 12), -farthest, farthest);
-        turn[axis] = (arc * body.inverse_gyration_radius) >> 26;
+        turn[axis] = raw_multiply(arc, std::int64_t{body.inverse_gyration_radius}) >> 26;
     }
 }
 

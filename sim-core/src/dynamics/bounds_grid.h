@@ -128,9 +128,12 @@ void BoundsGrid::query_level(const Level& level, const Bounds& query, Visit&& vi
         last[axis] = (std::int64_t{query.high[axis]} + level.extent_max) >> level.cell_shift;
     }
     const std::int64_t run = last[0] - first[0] + 1;
-    const std::int64_t lines = (last[1] - first[1] + 1) * (last[2] - first[2] + 1);
+    const std::int64_t lines_y = last[1] - first[1] + 1;
+    const std::int64_t lines_z = last[2] - first[2] + 1;
+    const std::int64_t count = level.item_count;
     const std::uint32_t* start = bucket_start_.data() + level.first_bucket;
-    if (lines > level.item_count || run > level.bucket_mask) {
+    if (run > level.bucket_mask || lines_y > count || lines_z > count ||
+        lines_y * lines_z > count) {
         visit_items(start[0], start[level.bucket_mask + 1], query, visit);
         return;
     }

@@ -1,7 +1,6 @@
 #include "dynamics/contact_solver.h"
 
 #include "dynamics/lanes.h"
-#include "dynamics/solve_contacts.h"
 
 #include "lockwind/integer.h"
 #include "lockwind/overflow.h"
@@ -78,21 +77,13 @@ std::int32_t mean_friction(std::int32_t a, std::int32_t b) {
     return static_cast<std::int32_t>(floor_sqrt(product));
 }
 
-template <class Pass>
-void for_each_lane(std::span<ContactBlock> blocks, SolverBody* bodies, Pass&& pass) {
-    for (ContactBlock& block : blocks) {
-        for (int lane = 0; lane < block.lane_count; ++lane) {
-            visit_lane(block, bodies, lane, pass);
-        }
-    }
-}
-
 } // namespace
 
-ContactSolver::ContactSolver(const DynamicsSettings& settings)
-    : constants_(make_step_constants(settings)),
+ContactSolver::ContactSolver(const DynamicsSettings& settings, const ContactKernels& kernels)
+    : constants_(make_step_constants(settings)), kernels_(kernels),
+      overflow_kernels_(kernels_of<ScalarLanes>()), padding_row_(settings.body_capacity),
       colouring_(settings.body_capacity, settings.pair_capacity),
-      layout_(settings.manifold_capacity), bodies_(settings.body_capacity),
+      layout_(settings.manifold_capacity), bodies_(std::size_t{settings.body_capacity} + 1),
       terms_(settings.body_capacity), courses_(settings.body_capacity),
       speed_bound_(settings.body_capacity) {
     dynamic_rows_.reserve(settings.body_capacity);
@@ -195,12 +186,46 @@ void ContactSolver::read_pair(const DynamicsTables& tables,
     block.mass_scale[lane] = softness.mass_scale;
     block.impulse_scale[lane] = softness.impulse_scale;
     block.bias_rate[lane] = softness.bias_rate;
-    for (std::uint32_t point = 0; point < block.point_count[lane]; ++point) {
-        block.point[point].impulse[lane] = manifold.normal_impulse[point];
+    for (std::uint32_t point = 0; point < block.point_count_max; ++point) {
+        const bool exists = point < block.point_count[lane];
+        block.point[point].impulse[lane] = exists ? manifold.normal_impulse[point] : 0;
     }
     block.friction_impulse[0][lane] = manifold.friction_impulse[0];
     block.friction_impulse[1][lane] = manifold.friction_impulse[1];
     block.twist_impulse[lane] = manifold.twist_impulse;
+}
+
+/// Lanes without a contact are a contact of nothing with nothing.
+void ContactSolver::fill_padding(ContactBlock& block, PairTerms& terms) const {
+    static constexpr Manifold kNothing{};
+    static constexpr BodyTerms kNoBody{};
+    for (int lane = block.lane_count; lane < kBlockLanes; ++lane) {
+        block.row_a[lane] = padding_row_;
+        block.row_b[lane] = padding_row_;
+        block.point_count[lane] = 0;
+        terms.manifold[lane] = &kNothing;
+        terms.body_a[lane] = &kNoBody;
+        terms.body_b[lane] = &kNoBody;
+        for (int axis = 0; axis < 3; ++axis) {
+            terms.centre_delta[axis][lane] = 0;
+        }
+        terms.inverse_radius_min[lane] = 0;
+        terms.lever_max[lane] = 0;
+        block.share_a[lane] = 0;
+        block.share_b[lane] = 0;
+        block.friction[lane] = 0;
+        block.twist_lever_a[lane] = 0;
+        block.twist_lever_b[lane] = 0;
+        block.mass_scale[lane] = 0;
+        block.impulse_scale[lane] = 0;
+        block.bias_rate[lane] = 0;
+        for (ContactBlock::Point& point : block.point) {
+            point.impulse[lane] = 0;
+        }
+        block.friction_impulse[0][lane] = 0;
+        block.friction_impulse[1][lane] = 0;
+        block.twist_impulse[lane] = 0;
+    }
 }
 
 void ContactSolver::prepare(const DynamicsTables& tables, const BodyFrames& frames) {
@@ -209,10 +234,8 @@ void ContactSolver::prepare(const DynamicsTables& tables, const BodyFrames& fram
         for (int lane = 0; lane < block.lane_count; ++lane) {
             read_pair(tables, frames, block, lane, terms);
         }
-        for (int lane = 0; lane < block.lane_count; lane += ScalarLanes::kWidth) {
-            BlockPreparation<ScalarLanes> preparation(terms, block, lane);
-            preparation.run(constants_.substep_rate, constants_.separation_max);
-        }
+        fill_padding(block, terms);
+        kernels_.prepare(terms, constants_.substep_rate, constants_.separation_max, block);
     }
 }
 
@@ -228,7 +251,7 @@ void ContactSolver::find_impacts() {
                 continue;
             }
             Impact impact{block.pair[lane], index, lane, {}, {}, 0};
-            visit_lane(block, bodies_.data(), lane, [&](auto& solver) {
+            visit_lanes<ScalarLanes>(block, bodies_.data(), lane, [&](auto& solver) {
                 solver.read_speeds(impact.approach);
             });
             if (*std::min_element(impact.approach, impact.approach + kBlockPoints) <
@@ -317,6 +340,12 @@ void ContactSolver::write_bodies(const DynamicsTables& tables, std::uint32_t tic
     }
 }
 
+void ContactSolver::run(ContactKernels::Pass ContactKernels::*pass) {
+    const std::span<ContactBlock> blocks = layout_.blocks();
+    (kernels_.*pass)(blocks.first(layout_.overflow_first()), bodies_.data());
+    (overflow_kernels_.*pass)(blocks.subspan(layout_.overflow_first()), bodies_.data());
+}
+
 void ContactSolver::solve(const DynamicsTables& tables,
                           std::uint32_t tick,
                           const BodyFrames& frames) {
@@ -326,15 +355,14 @@ void ContactSolver::solve(const DynamicsTables& tables,
     layout_.run(tables, colouring_.contacts());
     prepare(tables, frames);
     find_impacts();
-    const std::span<ContactBlock> blocks = layout_.blocks();
     for (std::uint32_t substep = 0; substep < constants_.substeps; ++substep) {
         integrate_velocities(substep);
         if (substep == 0) {
-            for_each_lane(blocks, bodies_.data(), [](auto& solver) { solver.warm_start(); });
+            run(&ContactKernels::warm_start);
         }
-        for_each_lane(blocks, bodies_.data(), [](auto& solver) { solver.solve(); });
+        run(&ContactKernels::solve);
         integrate_positions();
-        for_each_lane(blocks, bodies_.data(), [](auto& solver) { solver.relax(); });
+        run(&ContactKernels::relax);
         note_impacts();
     }
     write_manifolds(tables);
@@ -357,7 +385,7 @@ void ContactSolver::bounce(const DynamicsTables& tables, Impact& impact) {
         }
         const auto target = static_cast<std::int32_t>(
             -round_shift(restitution * impact.approach[point], kCoefficientFraction));
-        visit_lane(block, bodies_.data(), impact.lane, [&](auto& solver) {
+        visit_lanes<ScalarLanes>(block, bodies_.data(), impact.lane, [&](auto& solver) {
             impact.impulse_max[point] +=
                 solver.reach_speed(point, target, impact.impulse_max[point]);
         });

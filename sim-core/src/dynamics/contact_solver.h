@@ -4,8 +4,8 @@
 #include "dynamics/body_frame.h"
 #include "dynamics/body_integration.h"
 #include "dynamics/contact_block.h"
+#include "dynamics/contact_kernels.h"
 #include "dynamics/dynamics.h"
-#include "dynamics/prepare_contacts.h"
 #include "dynamics/step_constants.h"
 
 #include <cstdint>
@@ -17,7 +17,8 @@ namespace lockwind {
 /// The substeps of a tick, and restitution after them. All members are scratch of one tick.
 class ContactSolver {
 public:
-    explicit ContactSolver(const DynamicsSettings& settings);
+    explicit ContactSolver(const DynamicsSettings& settings,
+                           const ContactKernels& kernels = kernels_of<ScalarLanes>());
     void solve(const DynamicsTables& tables, std::uint32_t tick, const BodyFrames& frames);
     void restitution(const DynamicsTables& tables);
     std::span<const ContactHit> hits() const { return hits_; }
@@ -48,6 +49,7 @@ private:
                    ContactBlock& block,
                    int lane,
                    PairTerms& terms) const;
+    void fill_padding(ContactBlock& block, PairTerms& terms) const;
     void find_impacts();
     void note_impacts();
     void integrate_velocities(std::uint32_t substep);
@@ -57,7 +59,12 @@ private:
     void bounce(const DynamicsTables& tables, Impact& impact);
     void list_hits(const DynamicsTables& tables);
 
+    void run(ContactKernels::Pass ContactKernels::*pass);
+
     StepConstants constants_;
+    ContactKernels kernels_;
+    ContactKernels overflow_kernels_; // scalar: bodies may meet twice in a block
+    BodyRow padding_row_;             // of the lanes without a contact, at rest
     Colouring colouring_;
     BlockLayout layout_;
     std::vector<SolverBody> bodies_;

@@ -77,31 +77,32 @@ bool PairLook::is_still(const Pair& pair) const {
     const BodyProperties& a = tables_.properties[pair.row_a];
     const BodyProperties& b = tables_.properties[pair.row_b];
     for (std::uint32_t point = 0; point < pair.point_count; ++point) {
-        std::int32_t turn_a[3] = {0, 0, 0};
-        std::int32_t turn_b[3] = {0, 0, 0};
+        std::int64_t turn_a[3] = {0, 0, 0};
+        std::int64_t turn_b[3] = {0, 0, 0};
         std::int32_t now[3];
         const std::int32_t* anchor_a = manifold.anchor_a + 3 * point;
         if (a.mode != kFixed) {
             rotate(frame_a.rotation, manifold.local_a + 3 * point, now);
             for (int axis = 0; axis < 3; ++axis) {
-                turn_a[axis] = now[axis] - anchor_a[axis];
+                turn_a[axis] = std::int64_t{now[axis]} - anchor_a[axis];
             }
         }
         if (b.mode != kFixed) {
             rotate(frame_b.rotation, manifold.local_b + 3 * point, now);
             for (int axis = 0; axis < 3; ++axis) {
-                turn_b[axis] = now[axis] - (anchor_a[axis] - manifold.centre_delta[axis]);
+                turn_b[axis] =
+                    std::int64_t{now[axis]} - anchor_a[axis] + manifold.centre_delta[axis];
             }
         }
         std::int64_t square = 0;
         for (int axis = 0; axis < 3; ++axis) {
             const std::int64_t drift = std::int64_t{delta[axis]} - manifold.centre_delta[axis] +
                                        turn_b[axis] - turn_a[axis];
-            square += drift * drift;
-            if (magnitude(turn_a[axis]) > a.bounding_radius >> 3 ||
+            if (magnitude(drift) > kDriftMax || magnitude(turn_a[axis]) > a.bounding_radius >> 3 ||
                 magnitude(turn_b[axis]) > b.bounding_radius >> 3) {
                 return false;
             }
+            square += drift * drift;
         }
         if (square > kDriftMax * kDriftMax) {
             return false;
@@ -178,7 +179,8 @@ void PairLook::write_manifold(const Pair& pair,
     manifold.axis_separation = geometry.axis_separation;
     manifold.point_count = static_cast<std::uint8_t>(geometry.point_count);
     std::copy(friction, friction + 2, manifold.friction_impulse);
-    manifold.twist_impulse = friction[2];
+    // A single point bears no twist.
+    manifold.twist_impulse = geometry.point_count > 1 ? friction[2] : 0;
     std::uint32_t unmatched = (1U << pair.point_count) - 1;
     for (std::uint32_t point = 0; point < geometry.point_count; ++point) {
         const ManifoldPoint& fresh = geometry.points[point];

@@ -5,6 +5,7 @@
 #include "dynamics/lanes.h"
 
 #include <cstdint>
+#include <limits>
 
 namespace lockwind {
 
@@ -59,11 +60,16 @@ private:
     Vector of_manifold(Source&& source) const {
         return L::gather(first_, [&](int lane) { return source(*terms_.manifold[lane]); });
     }
-    /// Zero in the lanes that do not have this point.
-    Vector point_mask(std::uint32_t point) const {
-        return L::gather(first_, [&](int lane) {
-            return point < block_.point_count[lane] ? kCoefficientOne : 0;
-        });
+    /// `value`, or 0 in the lanes that do not have this point.
+    Vector of_point(std::uint32_t point, Vector value) const {
+        if constexpr (L::kWidth == 1) {
+            return value;
+        }
+        return L::minimum(value, L::gather(first_, [&](int lane) {
+                              return point < block_.point_count[lane]
+                                         ? std::numeric_limits<std::int32_t>::max()
+                                         : 0;
+                          }));
     }
 
     static Wide add_dot(Wide sum, const Vector a[3], const Vector b[3]) {
@@ -222,8 +228,8 @@ void BlockPreparation<L>::make_separation(std::uint32_t point,
     const Vector open = L::clamp(separation, L::set(0), L::set(2 * kSpeculativeMargin));
     const Vector weight = L::subtract(L::set(2 * kCoefficientOne),
                                       L::template multiply<1>(open, L::set(50 * 64 * 2)));
-    weight_[point] = L::minimum(
-        L::clamp(weight, L::set(kCoefficientOne / 16), L::set(kCoefficientOne)), point_mask(point));
+    weight_[point] =
+        of_point(point, L::clamp(weight, L::set(kCoefficientOne / 16), L::set(kCoefficientOne)));
 }
 
 template <class L>
@@ -259,6 +265,11 @@ template <class L>
 void BlockPreparation<L>::make_normal_row(std::uint32_t point) {
     const Jacobian jacobian = jacobian_of(arm_a_[point], arm_b_[point], axes_[0]);
     fill_row(jacobian, block_.point[point].row);
+    if constexpr (L::kWidth > 1) {
+        // Without mass a row never gains an impulse.
+        std::int32_t(&mass)[kBlockLanes] = block_.point[point].row.mass;
+        set_lane(mass, of_point(point, lane(mass)));
+    }
     for (std::uint32_t other = 0; other < point; ++other) {
         const ContactBlock::Row& row = block_.point[other].row;
         Wide sum = L::template start<kCoefficientFraction>();
@@ -278,9 +289,9 @@ void BlockPreparation<L>::find_friction_centre() {
     for (std::uint32_t point = 0; point < points_; ++point) {
         total = L::add(total, weight_[point]);
     }
-    // No less than one point's weight: lanes without a contact must not divide by 0.
-    const Vector inverse = // Q5.26
-        L::template reciprocal<54>(L::maximum(total, L::set(kCoefficientOne / 16)));
+    // A lane without a contact has no weight: it must not divide by 0.
+    const Vector least = L::set(kCoefficientOne / 16);
+    const Vector inverse = L::template reciprocal<54>(L::maximum(total, least)); // Q5.26
     for (int axis = 0; axis < 3; ++axis) {
         Wide sum_a = L::template start<kCoefficientFraction>();
         Wide sum_b = sum_a;
@@ -310,7 +321,7 @@ void BlockPreparation<L>::make_levers() {
         const Vector lever =
             L::template multiply<kLengthFraction + kEffectiveMassFraction - kCoefficientFraction>(
                 L::minimum(distance, longest), inverse_radius);
-        set_lane(block_.point[point].lever, lever);
+        set_lane(block_.point[point].lever, of_point(point, lever));
     }
 }
 

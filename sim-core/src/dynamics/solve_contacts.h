@@ -324,31 +324,4 @@ private:
     Velocities angular_;
 };
 
-/// Calls visit(solver) with the solver of a lane's number of points.
-template <class Visit>
-void visit_lane(ContactBlock& block, SolverBody* bodies, int lane, Visit&& visit) {
-    switch (block.point_count[lane]) {
-    case 1: {
-        BlockSolver<ScalarLanes, 1> solver(block, bodies, lane);
-        visit(solver);
-        break;
-    }
-    case 2: {
-        BlockSolver<ScalarLanes, 2> solver(block, bodies, lane);
-        visit(solver);
-        break;
-    }
-    case 3: {
-        BlockSolver<ScalarLanes, 3> solver(block, bodies, lane);
-        visit(solver);
-        break;
-    }
-    default: {
-        BlockSolver<ScalarLanes, 4> solver(block, bodies, lane);
-        visit(solver);
-        break;
-    }
-    }
-}
-
 } // namespace lockwind

@@ -94,7 +94,7 @@ void FreeTurn::turn_about(int axis, int halvings) {
     const int last = (axis + 2) % 3;
     const std::int64_t velocity =
         std::clamp(momentum[axis] * inertia[axis] / inertia_min, -velocity_max, velocity_max);
-    const std::int64_t angle = (velocity * angle_of_velocity) >> (26 + halvings);
+    const std::int64_t angle = raw_multiply(velocity, angle_of_velocity) >> (26 + halvings);
     const SinCos half = sin_cos(angle / 2);
     const std::int64_t sin = round_product(2 * half.sin * half.cos);
     const std::int64_t cos = kOne - round_product(2 * half.sin * half.sin);

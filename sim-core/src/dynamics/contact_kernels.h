@@ -1,0 +1,83 @@
+#pragma once
+
+#include "dynamics/contact_block.h"
+#include "dynamics/lanes.h"
+#include "dynamics/prepare_contacts.h"
+#include "dynamics/solve_contacts.h"
+
+#include <cstdint>
+#include <span>
+
+namespace lockwind {
+
+/// The solver's inner loops for one kind of lanes; every kind gives the same bits.
+struct ContactKernels {
+    using Pass = void (*)(std::span<ContactBlock> blocks, SolverBody* bodies);
+
+    void (*prepare)(const PairTerms& terms,
+                    std::int32_t substep_rate,
+                    std::int32_t separation_max,
+                    ContactBlock& block);
+    Pass warm_start;
+    Pass solve;
+    Pass relax;
+};
+
+/// Calls visit(solver) for the lanes from `first`, with the solver of their number of points.
+template <class L, class Visit>
+void visit_lanes(ContactBlock& block, SolverBody* bodies, int first, Visit&& visit) {
+    switch (L::kWidth == 1 ? block.point_count[first] : block.point_count_max) {
+    case 1: {
+        BlockSolver<L, 1> solver(block, bodies, first);
+        visit(solver);
+        break;
+    }
+    case 2: {
+        BlockSolver<L, 2> solver(block, bodies, first);
+        visit(solver);
+        break;
+    }
+    case 3: {
+        BlockSolver<L, 3> solver(block, bodies, first);
+        visit(solver);
+        break;
+    }
+    default: {
+        BlockSolver<L, 4> solver(block, bodies, first);
+        visit(solver);
+        break;
+    }
+    }
+}
+
+template <class L, class Visit>
+void visit_blocks(std::span<ContactBlock> blocks, SolverBody* bodies, Visit&& visit) {
+    for (ContactBlock& block : blocks) {
+        for (int first = 0; first < block.lane_count; first += L::kWidth) {
+            visit_lanes<L>(block, bodies, first, visit);
+        }
+    }
+}
+
+template <class L>
+ContactKernels kernels_of() {
+    return {[](const PairTerms& terms,
+               std::int32_t substep_rate,
+               std::int32_t separation_max,
+               ContactBlock& block) {
+                for (int first = 0; first < block.lane_count; first += L::kWidth) {
+                    BlockPreparation<L>(terms, block, first).run(substep_rate, separation_max);
+                }
+            },
+            [](std::span<ContactBlock> blocks, SolverBody* bodies) {
+                visit_blocks<L>(blocks, bodies, [](auto& solver) { solver.warm_start(); });
+            },
+            [](std::span<ContactBlock> blocks, SolverBody* bodies) {
+                visit_blocks<L>(blocks, bodies, [](auto& solver) { solver.solve(); });
+            },
+            [](std::span<ContactBlock> blocks, SolverBody* bodies) {
+                visit_blocks<L>(blocks, bodies, [](auto& solver) { solver.relax(); });
+            }};
+}
+
+} // namespace lockwind
