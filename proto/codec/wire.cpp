@@ -142,6 +142,7 @@ void to_wire(const Welcome& message, wire::Welcome& out) {
     out.set_sim_version(message.sim_version);
     out.set_build_info(message.build_info);
     out.set_resume_tick(message.resume_tick);
+    out.set_transfer(message.transfer);
     out.set_attempt(message.attempt);
 }
 
@@ -152,6 +153,7 @@ void from_wire(const wire::Welcome& message, Rules& rules, Welcome& out) {
     out.sim_version = message.sim_version();
     out.build_info = message.build_info();
     out.resume_tick = message.resume_tick();
+    out.transfer = message.transfer();
     out.attempt = message.attempt();
 }
 

@@ -342,7 +342,7 @@ TEST(CodecLimits, RefusesMessagesThatTravelTheOtherWay) {
 TEST(CodecLimits, FollowsTheReceiversLimits) {
     MessageLimits limits;
     limits.players_max = 3;
-    EXPECT_EQ(error_of(encode(Welcome{3, sample_config(), "", "", 0, 1}), limits),
+    EXPECT_EQ(error_of(encode(Welcome{3, sample_config(), "", "", 0, 0, 1}), limits),
               "Welcome: slot is 3, allowed are 0 .. 2");
     limits.blob_size_bytes_max = 100;
     EXPECT_EQ(error_of(encode(sample_messages()[7]), limits),
@@ -356,7 +356,7 @@ TEST(CodecLimits, FollowsTheReceiversLimits) {
 
 TEST(CodecLimits, ChecksBeforeSendingToo) {
     EXPECT_TRUE(check(sample_messages()[1]).ok());
-    Welcome large{0, sample_config(), "", "", 0, 1};
+    Welcome large{0, sample_config(), "", "", 0, 0, 1};
     large.config.scene_text.assign(60'001, ' ');
     EXPECT_EQ(check(large).error().message,
               "Welcome: config.scene_text has 60001 bytes, allowed are 60000");

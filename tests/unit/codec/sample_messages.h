@@ -41,7 +41,7 @@ inline std::vector<Message> sample_messages() {
     using S = InputStatus;
     return {
         Hello{7, "sim-1a2b", "g++ 12 x86-64", 0xfedcba9876543210U, 2},
-        Welcome{3, sample_config(), "sim-1a2b", "clang 14 s390x", 600, 2},
+        Welcome{3, sample_config(), "sim-1a2b", "clang 14 s390x", 600, 9, 2},
         Refuse{RefuseReason::config, "config.seed", "yours 1, mine 2"},
         Ready{600, hash(0)},
         InputBatch{3,
@@ -64,46 +64,66 @@ inline std::vector<Message> sample_messages() {
     };
 }
 
+/// All fields. The structured bindings stop compiling when a message gets another one.
 inline auto fields(const Hello& m) {
-    return std::tie(m.protocol_version, m.sim_version, m.build_info, m.token, m.attempt);
+    const auto& [a, b, c, d, e] = m;
+    return std::tie(a, b, c, d, e);
 }
+inline auto fields(const MatchConfig& m) {
+    const auto& [a, b, c, d, e, f, g, h, i, j] = m;
+    return std::tie(a, b, c, d, e, f, g, h, i, j);
+}
+static_assert(std::tuple_size_v<decltype(fields(MatchConfig{}))> == 10, "sample_config sets all");
 inline auto fields(const Welcome& m) {
-    return std::tie(m.slot, m.config, m.sim_version, m.build_info, m.resume_tick, m.attempt);
+    const auto& [a, b, c, d, e, f, g] = m;
+    return std::tie(a, b, c, d, e, f, g);
 }
 inline auto fields(const Refuse& m) {
-    return std::tie(m.reason, m.field, m.message);
+    const auto& [a, b, c] = m;
+    return std::tie(a, b, c);
 }
 inline auto fields(const Ready& m) {
-    return std::tie(m.tick, m.state_hash);
+    const auto& [a, b] = m;
+    return std::tie(a, b);
 }
 inline auto fields(const InputBatch& m) {
-    return std::tie(m.slot, m.first_tick, m.inputs, m.confirmed_tick, m.sent_us);
+    const auto& [a, b, c, d, e] = m;
+    return std::tie(a, b, c, d, e);
 }
 inline auto fields(const Confirmation& m) {
-    return std::tie(m.first_tick, m.confirmed_tick, m.ticks, m.acks);
+    const auto& [a, b, c, d] = m;
+    return std::tie(a, b, c, d);
 }
 inline auto fields(const HashReport& m) {
-    return std::tie(m.slot, m.entries);
+    const auto& [a, b] = m;
+    return std::tie(a, b);
 }
 inline auto fields(const Chunk& m) {
-    return std::tie(m.kind, m.transfer, m.index, m.count, m.blob_size_bytes, m.bytes);
+    const auto& [a, b, c, d, e, f] = m;
+    return std::tie(a, b, c, d, e, f);
 }
 inline auto fields(const ChunkAck& m) {
-    return std::tie(m.transfer, m.index);
+    const auto& [a, b] = m;
+    return std::tie(a, b);
 }
 inline auto fields(const DesyncQuery& m) {
-    return std::tie(m.agreed_tick, m.bad_tick, m.server_hash, m.client_hash);
+    const auto& [a, b, c, d] = m;
+    return std::tie(a, b, c, d);
 }
 inline auto fields(const End& m) {
-    return std::tie(m.reason, m.last_tick, m.attempt, m.message);
+    const auto& [a, b, c, d] = m;
+    return std::tie(a, b, c, d);
 }
 
 inline bool operator==(const ConfirmedTick& a, const ConfirmedTick& b) {
     return a.inputs == b.inputs;
 }
+inline auto fields(const SlotAck& m) {
+    const auto& [a, b, c, d, e] = m;
+    return std::tie(a, b, c, d, e);
+}
 inline bool operator==(const SlotAck& a, const SlotAck& b) {
-    return std::tie(a.input_tick, a.hash_tick, a.echo_us, a.echo_hold_us, a.attached) ==
-           std::tie(b.input_tick, b.hash_tick, b.echo_us, b.echo_hold_us, b.attached);
+    return fields(a) == fields(b);
 }
 inline bool operator==(const HashReport::Entry& a, const HashReport::Entry& b) {
     return a.tick == b.tick && a.hash == b.hash;
