@@ -67,6 +67,7 @@ struct ScalarLanes {
         return value > 0 ? positive : other;
     }
 
+    static Wide zero() { return 0; }
     /// A sum to which products are added, and which round<Shift> turns back into a vector.
     template <int Shift>
     static Wide start() {

@@ -317,7 +317,7 @@ void BlockPreparation<L>::make_levers() {
             from_centre[axis] = L::clamp(
                 L::subtract(arm_a_[point][axis], centre_a_[axis]), L::negate(bound), bound);
         }
-        const Vector distance = L::root(add_dot(L::template start<1>(), from_centre, from_centre));
+        const Vector distance = L::root(add_dot(L::zero(), from_centre, from_centre));
         const Vector lever =
             L::template multiply<kLengthFraction + kEffectiveMassFraction - kCoefficientFraction>(
                 L::minimum(distance, longest), inverse_radius);
