@@ -123,7 +123,7 @@ TEST(CodecMutation, NeverCrashesNorAllocatesMuchOnDamagedMessages) {
 }
 
 TEST(CodecMutation, AllocatesLittleForTheCostliestMessages) {
-    const auto decode_cost = [](unsigned char kind, const std::string& unit) {
+    const auto decode_cost = [](unsigned kind, const std::string& unit) {
         std::vector<std::byte> body;
         while (body.size() + unit.size() < kMessageSizeBytesMax - 4) {
             for (const char c : unit) {
