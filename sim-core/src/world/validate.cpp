@@ -190,11 +190,14 @@ const char* bad_pair_field(const DynamicsTables& tables, std::uint32_t index) {
     return all_zero(pair.zero) ? nullptr : "zero";
 }
 
-/// Largest distance of a contact point from the centre of `row`, Q9.22 m: the body and 1 m; on a
-/// plane, its partner's.
-std::int64_t reach(const DynamicsTables& tables, BodyRow row, BodyRow partner) {
-    const std::int64_t own = tables.properties[row].bounding_radius;
-    return (own != 0 ? own : tables.properties[partner].bounding_radius) + (std::int64_t{1} << 22U);
+/// Largest coordinate of a contact point from either centre, Q9.22 m. The point lies midway
+/// between the two surfaces: within both bodies and 1 m, or as deep in a plane as a body may be.
+std::int64_t reach(const DynamicsTables& tables, const Pair& pair) {
+    constexpr std::int64_t kApart = std::int64_t{1} << 22U;
+    constexpr std::int64_t kPlaneDepth = std::int64_t{128} << 22U;
+    const std::int64_t a = tables.properties[pair.row_a].bounding_radius;
+    const std::int64_t b = tables.properties[pair.row_b].bounding_radius;
+    return a + b + (a == 0 || b == 0 ? kPlaneDepth : kApart);
 }
 
 const char* bad_manifold_field(const DynamicsTables& tables, const Pair& pair) {
@@ -214,19 +217,16 @@ const char* bad_manifold_field(const DynamicsTables& tables, const Pair& pair) {
         !all_within(manifold.normal_impulse, kImpulseMax)) {
         return "normal_impulse";
     }
-    const std::int64_t reach_a = reach(tables, pair.row_a, pair.row_b);
-    const std::int64_t reach_b = reach(tables, pair.row_b, pair.row_a);
-    if (!all_within(manifold.anchor_a, reach_a) || !all_within(manifold.local_a, reach_a)) {
-        return "local_a";
+    const std::int64_t farthest = reach(tables, pair);
+    if (!all_within(manifold.anchor_a, farthest)) {
+        return "anchor_a";
     }
-    if (!all_within(manifold.local_b, reach_b)) {
-        return "local_b";
+    if (!all_within(manifold.local_a, farthest) || !all_within(manifold.local_b, farthest)) {
+        return "local_a or local_b";
     }
-    if (!all_within(manifold.centre_delta, reach_a + reach_b)) {
-        return "centre_delta";
-    }
-    if (!all_within(manifold.separation, reach_a + reach_b)) {
-        return "separation";
+    if (!all_within(manifold.centre_delta, 2 * farthest) ||
+        !all_within(manifold.separation, 2 * farthest)) {
+        return "centre_delta or separation";
     }
     for (std::uint32_t point = 0; point < kManifoldPointsMax; ++point) {
         if (manifold.normal_impulse[point] < 0) {
