@@ -9,19 +9,20 @@ void rotation_matrix(const std::int32_t orientation[4], std::int32_t rotation[9]
     const std::int64_t y = orientation[1];
     const std::int64_t z = orientation[2];
     const std::int64_t w = orientation[3];
-    // Twice a sum of two products, Q60 -> Q30.
-    const auto twice = [](std::int64_t sum) {
-        return raw_narrow<std::int32_t>(round_shift(sum, kUnitFraction - 1));
+    // one + twice a sum of two products (Q60), in Q30: the second term alone may be -2, out of
+    // range.
+    const auto entry = [](std::int64_t one, std::int64_t sum) {
+        return raw_narrow<std::int32_t>(one + round_shift(sum, kUnitFraction - 1));
     };
-    rotation[0] = kUnitOne - twice(y * y + z * z);
-    rotation[1] = twice(x * y - w * z);
-    rotation[2] = twice(x * z + w * y);
-    rotation[3] = twice(x * y + w * z);
-    rotation[4] = kUnitOne - twice(x * x + z * z);
-    rotation[5] = twice(y * z - w * x);
-    rotation[6] = twice(x * z - w * y);
-    rotation[7] = twice(y * z + w * x);
-    rotation[8] = kUnitOne - twice(x * x + y * y);
+    rotation[0] = entry(kUnitOne, -(y * y + z * z));
+    rotation[1] = entry(0, x * y - w * z);
+    rotation[2] = entry(0, x * z + w * y);
+    rotation[3] = entry(0, x * y + w * z);
+    rotation[4] = entry(kUnitOne, -(x * x + z * z));
+    rotation[5] = entry(0, y * z - w * x);
+    rotation[6] = entry(0, x * z - w * y);
+    rotation[7] = entry(0, y * z + w * x);
+    rotation[8] = entry(kUnitOne, -(x * x + y * y));
 }
 
 std::int64_t dot_unit(const std::int32_t unit[3], const std::int64_t v[3]) {
