@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Lints every source with clang-tidy 14 as .clang-tidy says; warnings are errors.
 
-Usage: scripts/check_tidy.py [--build DIR] [--jobs N] [--fresh] [FILE ...]
-       (default: build/release, all sources; --fresh forgets what was found clean before)
+Usage: scripts/check_tidy.py [--build DIR] [--jobs N] [--tests] [--fresh] [FILE ...]
+       (default: build/release, all sources but tests; --fresh forgets what was found clean before)
 The path-sensitive clang-analyzer runs on sim-core alone: elsewhere it costs most of the time. A file that
 was clean is linted again only when it, one of its headers, its command or .clang-tidy has changed.
 """
@@ -22,14 +22,16 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 TIDY = "clang-tidy-14"
 
 
-def entries_of(build, wanted):
-    """Compile commands of the project's own sources."""
+def entries_of(build, wanted, with_tests):
+    """Compile commands of the project's own sources: those wanted, or all."""
     entries = {}
     for entry in json.loads((build / "compile_commands.json").read_text()):
         file = (pathlib.Path(entry["directory"]) / entry["file"]).resolve()
         if file.is_relative_to(ROOT) and not file.is_relative_to(build.resolve()):
             name = file.relative_to(ROOT).as_posix()
-            if name.split("/")[0] != "build" and file.suffix == ".cpp" and (not wanted or name in wanted):
+            folder = name.split("/")[0]
+            chosen = name in wanted if wanted else with_tests or folder != "tests"
+            if chosen and folder != "build" and file.suffix == ".cpp":
                 entries[name] = entry
     return entries
 
@@ -79,6 +81,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--tests", action="store_true")
     parser.add_argument("--fresh", action="store_true")
     parser.add_argument("files", nargs="*")
     options = parser.parse_args()
@@ -91,7 +94,7 @@ def main():
     headers_of = dependencies(build)
     cache = {}
     todo = []
-    entries = entries_of(build, set(options.files))
+    entries = entries_of(build, set(options.files), options.tests)
     for name, entry in sorted(entries.items()):
         output = re.search(r" -o (\S+)", entry["command"]).group(1)
         headers = headers_of.get(output, [])

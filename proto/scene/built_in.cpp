@@ -4,8 +4,8 @@
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
-#include <cstring>
 #include <memory>
+#include <system_error>
 
 namespace lockwind {
 namespace {
@@ -52,12 +52,15 @@ std::string built_in_names() {
     return names + "heap_N";
 }
 
+std::string reason(int error_number) {
+    return std::generic_category().message(error_number);
+}
+
 Result<std::string> read_file(const std::string& path) {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
                                                                &std::fclose);
     if (file == nullptr) {
-        return Error{path + ": " + std::strerror(errno) +
-                     "; name a file or one of: " + built_in_names()};
+        return Error{path + ": " + reason(errno) + "; name a file or one of: " + built_in_names()};
     }
     std::string text;
     std::array<char, 4096> block{};
@@ -71,7 +74,7 @@ Result<std::string> read_file(const std::string& path) {
         }
     }
     if (std::ferror(file.get()) != 0) {
-        return Error{path + ": " + std::strerror(errno)};
+        return Error{path + ": " + reason(errno)};
     }
     return text;
 }

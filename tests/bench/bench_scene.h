@@ -24,6 +24,9 @@ inline constexpr std::array kBenchScenes{
     BenchScene{"arena", 600, 4},
 };
 
+/// Prints the message and ends the program with exit code 2.
+[[noreturn]] void give_up(const std::string& message);
+
 /// The scene's definition. Ends the program with a message where it cannot be loaded.
 WorldDefinition load_bench_scene(const BenchScene& scene);
 

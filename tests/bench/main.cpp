@@ -15,13 +15,17 @@
 
 namespace lockwind::bench {
 
+void give_up(const std::string& message) {
+    std::fprintf(stderr, "lockwind-bench: %s\n", message.c_str());
+    std::exit(2); // NOLINT(concurrency-mt-unsafe): there is one thread
+}
+
 WorldDefinition load_bench_scene(const BenchScene& scene) {
     SceneOptions options;
     options.players = scene.players;
     Result<WorldDefinition> definition = load_scene(scene.name, options);
     if (!definition) {
-        std::fprintf(stderr, "lockwind-bench: %s\n", definition.error().message.c_str());
-        std::exit(2);
+        give_up(definition.error().message);
     }
     return std::move(definition).value();
 }
@@ -72,8 +76,9 @@ int main(int argc, char** argv) {
         return 2;
     }
     using lockwind::bench::BareNames;
-    BareNames display(
-        std::unique_ptr<benchmark::BenchmarkReporter>(benchmark::CreateDefaultDisplayReporter()));
+    std::unique_ptr<benchmark::BenchmarkReporter> terminal(
+        benchmark::CreateDefaultDisplayReporter());
+    BareNames display(std::move(terminal));
     BareNames file(std::make_unique<benchmark::JSONReporter>());
     benchmark::RunSpecifiedBenchmarks(&display, to_file ? &file : nullptr);
     benchmark::Shutdown();

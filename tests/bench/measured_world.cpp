@@ -1,5 +1,6 @@
 #include "measured_world.h"
 
+#include "bench_scene.h"
 #include "dynamics/contact.h"
 
 #include "lockwind/player_input.h"
@@ -20,8 +21,7 @@ std::uint32_t section_index(std::string_view name) {
             return index;
         }
     }
-    std::fprintf(stderr, "lockwind-bench: no section %s\n", std::string(name).c_str());
-    std::exit(2);
+    give_up("no section " + std::string(name));
 }
 
 using Vector = std::array<double, 3>;
@@ -61,8 +61,7 @@ double separation(const World& world, const Manifold& manifold, std::uint32_t po
 MeasuredWorld::MeasuredWorld(const WorldDefinition& definition) {
     auto created = WorldSimulation::create(definition);
     if (!created) {
-        std::fprintf(stderr, "lockwind-bench: %s\n", created.error().message.c_str());
-        std::exit(2);
+        give_up(created.error().message);
     }
     simulation_ = std::move(created).value();
     PlayerInput input;
