@@ -8,9 +8,13 @@
 // norm, normalize and isApprox go through squares in the scalar: they lose half the digits of short
 // vectors (normalized() of vector.h does not), and isApprox sees no difference below 2^-17.
 
+#include "lockwind/trig.h"
+#include "lockwind/vector.h"
+
 #include <limits>
 
-namespace lockwind::inline LOCKWIND_ARITHMETIC {
+namespace lockwind {
+inline namespace LOCKWIND_ARITHMETIC {
 
 /// Found by Eigen's decompositions through their argument: every value is a number.
 template <class Raw, int FractionBits>
@@ -26,7 +30,8 @@ constexpr bool isinf(Fixed<Raw, FractionBits> /*value*/) {
     return false;
 }
 
-} // namespace lockwind::inline LOCKWIND_ARITHMETIC
+} // namespace LOCKWIND_ARITHMETIC
+} // namespace lockwind
 
 namespace std {
 
@@ -129,7 +134,8 @@ private:
 
 } // namespace Eigen
 
-namespace lockwind::inline LOCKWIND_ARITHMETIC {
+namespace lockwind {
+inline namespace LOCKWIND_ARITHMETIC {
 
 using Vector3r = Eigen::Matrix<Real, 3, 1>;
 using Matrix3r = Eigen::Matrix<Real, 3, 3>;
@@ -149,4 +155,5 @@ inline RealQuat from_eigen(const Quaternionr& q) {
     return {q.x(), q.y(), q.z(), q.w()};
 }
 
-} // namespace lockwind::inline LOCKWIND_ARITHMETIC
+} // namespace LOCKWIND_ARITHMETIC
+} // namespace lockwind

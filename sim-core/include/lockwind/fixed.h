@@ -9,7 +9,8 @@
 #include <limits>
 #include <type_traits>
 
-namespace lockwind::inline LOCKWIND_ARITHMETIC {
+namespace lockwind {
+inline namespace LOCKWIND_ARITHMETIC {
 
 /// A fixed-point number: raw / 2^FractionBits in two's complement, of the one width and scale its
 /// type says. + - and * wrap (defined), a CHECKED build traps instead; * rounds once, half up; /
@@ -155,4 +156,5 @@ private:
     Raw raw_ = 0;
 };
 
-} // namespace lockwind::inline LOCKWIND_ARITHMETIC
+} // namespace LOCKWIND_ARITHMETIC
+} // namespace lockwind

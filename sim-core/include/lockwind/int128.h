@@ -6,7 +6,8 @@
 #include <compare>
 #include <cstdint>
 
-namespace lockwind::inline LOCKWIND_ARITHMETIC {
+namespace lockwind {
+inline namespace LOCKWIND_ARITHMETIC {
 
 /// An unsigned 128-bit integer, as two limbs on every machine.
 struct UInt128 {
@@ -233,4 +234,5 @@ requires(sizeof(Wide) == 16) constexpr To raw_saturate(Wide value) {
     return static_cast<To>(low_limb(value));
 }
 
-} // namespace lockwind::inline LOCKWIND_ARITHMETIC
+} // namespace LOCKWIND_ARITHMETIC
+} // namespace lockwind

@@ -6,7 +6,8 @@
 #include <cstdint>
 #include <type_traits>
 
-namespace lockwind::inline LOCKWIND_ARITHMETIC {
+namespace lockwind {
+inline namespace LOCKWIND_ARITHMETIC {
 
 /// floor(value / 2^shift + 1/2): round half up, the one rounding rule of the project. Exact for
 /// every value: the half is bit shift - 1, added after the shift, so nothing can overflow.
@@ -174,4 +175,5 @@ multiply_divide(std::int64_t a, std::int64_t numerator, std::int64_t denominator
     return static_cast<std::int64_t>(quotient < kLimit ? quotient : kLimit - 1);
 }
 
-} // namespace lockwind::inline LOCKWIND_ARITHMETIC
+} // namespace LOCKWIND_ARITHMETIC
+} // namespace lockwind

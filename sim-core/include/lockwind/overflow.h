@@ -38,7 +38,8 @@
 #endif
 #endif
 
-namespace lockwind::inline LOCKWIND_ARITHMETIC {
+namespace lockwind {
+inline namespace LOCKWIND_ARITHMETIC {
 
 /// True in a build that traps every overflow; elsewhere arithmetic wraps in two's complement.
 inline constexpr bool kChecked = LOCKWIND_ARITHMETIC_CHECKED;
@@ -133,4 +134,5 @@ constexpr std::make_unsigned_t<T> raw_magnitude(T value) {
     return value < 0 ? static_cast<U>(U{0} - static_cast<U>(value)) : static_cast<U>(value);
 }
 
-} // namespace lockwind::inline LOCKWIND_ARITHMETIC
+} // namespace LOCKWIND_ARITHMETIC
+} // namespace lockwind

@@ -5,7 +5,8 @@
 
 #include <cstdint>
 
-namespace lockwind::inline LOCKWIND_ARITHMETIC {
+namespace lockwind {
+inline namespace LOCKWIND_ARITHMETIC {
 
 /// An angle in 2^-64 turns. Sums, differences and multiples wrap exactly: a full turn is 0.
 class Angle {
@@ -115,4 +116,5 @@ Real acos(Real x);
 /// Rotation by `angle` about the unit vector `axis`, right-handed.
 RealQuat from_axis_angle(const Vec3& axis, Angle angle);
 
-} // namespace lockwind::inline LOCKWIND_ARITHMETIC
+} // namespace LOCKWIND_ARITHMETIC
+} // namespace lockwind

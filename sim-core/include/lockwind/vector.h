@@ -5,7 +5,8 @@
 
 #include <cstdint>
 
-namespace lockwind::inline LOCKWIND_ARITHMETIC {
+namespace lockwind {
+inline namespace LOCKWIND_ARITHMETIC {
 
 using Real = Fixed<std::int64_t, 32>;        // Q31.32: positions, speeds, masses, the API's scalar
 using Unit = Fixed<std::int32_t, 30>;        // Q2.30: unit vectors, rotations, quaternions
@@ -188,4 +189,5 @@ constexpr Vec3 rotate(const RealQuat& q, const Vec3& v) {
                            product(u.y, t.x))};
 }
 
-} // namespace lockwind::inline LOCKWIND_ARITHMETIC
+} // namespace LOCKWIND_ARITHMETIC
+} // namespace lockwind

@@ -7,7 +7,8 @@
 #include <limits>
 #include <type_traits>
 
-namespace lockwind::inline LOCKWIND_ARITHMETIC {
+namespace lockwind {
+inline namespace LOCKWIND_ARITHMETIC {
 
 /// An exact sum of products, raw / 2^FractionBits, that is rounded once, at its end. Storage is
 /// int64 for products of two 32-bit formats, else Int128. A single product always fits; sums
@@ -119,4 +120,5 @@ constexpr To convert_saturated(Fixed<Raw, FractionBits> value) {
     }
 }
 
-} // namespace lockwind::inline LOCKWIND_ARITHMETIC
+} // namespace LOCKWIND_ARITHMETIC
+} // namespace lockwind

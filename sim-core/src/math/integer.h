@@ -8,7 +8,8 @@
 #include "lockwind/integer.h"
 #include "lockwind/wide.h"
 
-namespace lockwind::inline LOCKWIND_ARITHMETIC {
+namespace lockwind {
+inline namespace LOCKWIND_ARITHMETIC {
 
 /// a * b / 2^shift, rounded half up, in int64: the product must fit (a CHECKED build traps).
 constexpr std::int64_t multiply_shift(std::int64_t a, std::int64_t b, int shift) {
@@ -20,4 +21,5 @@ constexpr std::int64_t multiply_shift_wide(std::int64_t a, std::int64_t b, int s
     return raw_narrow<std::int64_t>(round_shift(wide_product<Int128>(a, b), shift));
 }
 
-} // namespace lockwind::inline LOCKWIND_ARITHMETIC
+} // namespace LOCKWIND_ARITHMETIC
+} // namespace lockwind

@@ -6,7 +6,8 @@
 #include <array>
 #include <bit>
 
-namespace lockwind::inline LOCKWIND_ARITHMETIC {
+namespace lockwind {
+inline namespace LOCKWIND_ARITHMETIC {
 
 namespace {
 
@@ -133,4 +134,5 @@ RealQuat from_axis_angle(const Vec3& axis, Angle angle) {
     return {vector.x, vector.y, vector.z, circle.cos};
 }
 
-} // namespace lockwind::inline LOCKWIND_ARITHMETIC
+} // namespace LOCKWIND_ARITHMETIC
+} // namespace lockwind

@@ -7,7 +7,8 @@
 #include <ostream>
 #include <random>
 
-namespace lockwind::inline LOCKWIND_ARITHMETIC {
+namespace lockwind {
+inline namespace LOCKWIND_ARITHMETIC {
 
 template <class Raw, int FractionBits>
 std::ostream& operator<<(std::ostream& out, Fixed<Raw, FractionBits> value) {
@@ -69,4 +70,5 @@ private:
     std::mt19937_64 engine_;
 };
 
-} // namespace lockwind::inline LOCKWIND_ARITHMETIC
+} // namespace LOCKWIND_ARITHMETIC
+} // namespace lockwind
