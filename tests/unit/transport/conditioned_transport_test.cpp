@@ -12,7 +12,7 @@ namespace {
 class TestWire final : public Transport {
 public:
     SendResult send(std::uint32_t to, Channel channel, std::span<const std::byte> bytes) override {
-        if (full) {
+        if (bytes.size() > room_bytes) {
             return SendResult::full;
         }
         sent.push_back({to, channel, {bytes.begin(), bytes.end()}});
@@ -32,8 +32,8 @@ public:
     std::uint32_t peer_count() const override { return 1; }
     TransportStats stats() const override { return {}; }
 
-    bool full = false;
-    std::vector<Packet> sent; // `from` holds the receiver
+    std::size_t room_bytes = kPayloadSizeBytesMax; // full for what is larger
+    std::vector<Packet> sent;                      // `from` holds the receiver
     std::vector<Packet> arriving;
     std::vector<std::uint64_t> waits_us;
     VirtualClock clock;
@@ -144,23 +144,24 @@ TEST(ConditionedTransport, LosesAndDoublesByItsSeed) {
     // 1,000 x 0.8 x 1.1 = 880, five standard deviations of about 14.
     EXPECT_NEAR(static_cast<double>(sent.size()), 880, 75);
     EXPECT_NEAR(static_cast<double>(in.size()), 880, 75);
+    EXPECT_NE(sent.size(), in.size()) << "each direction has its own draws";
 }
 
 TEST(ConditionedTransport, KeepsReliableOrderOverAFullWire) {
     Fixture f(delay(1'000));
-    f.wire->full = true;
-    for (const char* text : {"1", "2", "3"}) {
+    f.wire->room_bytes = 1;
+    for (const char* text : {"one", "2", "3"}) {
         EXPECT_EQ(f.transport->send(0, Channel::reliable, bytes_of(text)), SendResult::sent);
     }
     (void)f.transport->send(0, Channel::best_effort, bytes_of("gone"));
     f.wire->clock.advance_to(1'000);
     (void)received(*f.transport);
-    EXPECT_EQ(f.sent(), Texts{});
+    EXPECT_EQ(f.sent(), Texts{}) << "there is room for 2, but it waits for the one before it";
     EXPECT_EQ(f.transport->next_due_us(), 2'000U) << "not at once: that would spin";
-    f.wire->full = false;
+    f.wire->room_bytes = kPayloadSizeBytesMax;
     f.wire->clock.advance_to(2'000);
     (void)received(*f.transport);
-    EXPECT_EQ(f.sent(), (Texts{"1", "2", "3"}));
+    EXPECT_EQ(f.sent(), (Texts{"one", "2", "3"}));
 }
 
 TEST(ConditionedTransport, IsFullWhenTooMuchIsOnItsWay) {

@@ -74,6 +74,27 @@ TEST(SimulatedNetwork, KeepsLinksIndependent) {
     EXPECT_EQ(schedule(42, 0), schedule(42, 3));
 }
 
+TEST(SimulatedNetwork, GivesEachLinkItsOwnFate) {
+    VirtualClock clock;
+    SimulatedNetwork network(clock, 42, wan());
+    const auto server = network.open(kServerAddress);
+    const auto one = network.open(1);
+    const auto two = network.open(2);
+    for (int i = 0; i < 200; ++i) {
+        (void)one->send(0, Channel::best_effort, bytes_of(std::to_string(i)));
+        (void)two->send(0, Channel::best_effort, bytes_of(std::to_string(i)));
+    }
+    clock.advance_to(1'000'000);
+    Texts from_one;
+    Texts from_two;
+    for (const std::string& text : received(*server)) {
+        (text[0] == '1' ? from_one : from_two).push_back(text.substr(2));
+    }
+    EXPECT_GT(from_one.size(), 150U);
+    EXPECT_GT(from_two.size(), 150U);
+    EXPECT_NE(from_one, from_two);
+}
+
 TEST(SimulatedNetwork, DeliversAtTheArrivalAndNotBefore) {
     VirtualClock clock;
     SimulatedNetwork network(clock, 1, delay(40'000));
