@@ -49,12 +49,12 @@ constexpr FieldType field_type_of() {
 template <class T>
 struct FieldShape {
     using Component = T;
-    static constexpr std::uint32_t components = 1;
+    static constexpr std::uint32_t kComponents = 1;
 };
 template <class T, std::size_t N>
 struct FieldShape<T[N]> {
     using Component = T;
-    static constexpr std::uint32_t components = N;
+    static constexpr std::uint32_t kComponents = N;
 };
 
 template <class Member>
@@ -65,7 +65,7 @@ constexpr FieldDescriptor describe_field(std::string_view name,
                                          std::string_view components_as) {
     return {name,
             field_type_of<typename FieldShape<Member>::Component>(),
-            FieldShape<Member>::components,
+            FieldShape<Member>::kComponents,
             static_cast<std::uint32_t>(offset_bytes),
             fraction_bits,
             unit,
