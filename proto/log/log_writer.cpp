@@ -42,21 +42,29 @@ Status LogWriter::append(const LogRecord& record) {
     return file_.write(encode_record(record, input_size_bytes_));
 }
 
-Status LogWriter::write_tick(Tick tick, std::span<const SlotInput> inputs) {
+Status LogWriter::write_start_hash(std::uint64_t hash) {
+    LOCKWIND_ASSERT(last_tick_ == 0);
+    return append(HashRecord{0, hash});
+}
+
+Status LogWriter::write_tick(Tick tick,
+                             std::span<const SlotInput> inputs,
+                             std::optional<std::uint64_t> hash) {
+    LOCKWIND_ASSERT(!ended_);
     LOCKWIND_ASSERT(tick == last_tick_ + 1 && inputs.size() == players_);
     LOCKWIND_ASSERT(std::none_of(inputs.begin(), inputs.end(), [](const SlotInput& input) {
         return input.status == InputStatus::predicted;
     }));
-    Status status = append(TickRecord{tick, {inputs.begin(), inputs.end()}});
+    const std::string record =
+        encode_record(TickRecord{tick, {inputs.begin(), inputs.end()}}, input_size_bytes_);
+    Status status = hash ? file_.stage(record) : file_.write(record);
+    if (status && hash) {
+        status = append(HashRecord{tick, *hash});
+    }
     if (status) {
         last_tick_ = tick;
     }
     return status;
-}
-
-Status LogWriter::write_hash(Tick tick, std::uint64_t hash) {
-    LOCKWIND_ASSERT(tick == last_tick_);
-    return append(HashRecord{tick, hash});
 }
 
 Status LogWriter::write_keyframe(Tick tick, std::uint64_t hash, std::span<const std::byte> state) {

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,11 +28,13 @@ public:
     static Result<std::unique_ptr<LogWriter>> create(const std::string& path,
                                                      const LogHeader& header);
 
-    /// Call before the tick's confirmation is sent. Ticks are consecutive from 1; one input per
-    /// slot, none of them predicted.
-    Status write_tick(Tick tick, std::span<const SlotInput> inputs);
-    /// Hash of state(tick) for the last tick written, before the next is (tick 0 before the first).
-    Status write_hash(Tick tick, std::uint64_t hash);
+    /// Hash of state(0); before the first tick.
+    Status write_start_hash(std::uint64_t hash);
+    /// Inputs of a tick and, where it is due, the hash of state(tick): two records, one write(2), so
+    /// that a kill leaves no tick that cannot be verified. Call before the tick's confirmation is
+    /// sent. Ticks are consecutive from 1; one input per slot, none of them predicted.
+    Status
+    write_tick(Tick tick, std::span<const SlotInput> inputs, std::optional<std::uint64_t> hash);
     /// True where state(tick) is due as a keyframe (every kKeyframeIntervalTicks).
     static bool keyframe_due(Tick tick) { return tick % kKeyframeIntervalTicks == 0; }
     /// `state` as Simulation::save gives it, of the last tick written; stored compressed.

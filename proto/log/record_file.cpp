@@ -151,13 +151,20 @@ RecordWriter::~RecordWriter() {
 }
 
 Status RecordWriter::write(std::string_view payload) {
+    if (Status staged = stage(payload); !staged) {
+        return staged;
+    }
+    return write_buffer();
+}
+
+Status RecordWriter::stage(std::string_view payload) {
     if (payload.size() > kRecordPayloadBytesMax) {
         return Error{path_ + ": a record of " + std::to_string(payload.size()) +
                      " bytes is larger than the format's " +
                      std::to_string(kRecordPayloadBytesMax)};
     }
     append_record(buffer_, payload);
-    return write_buffer();
+    return Success{};
 }
 
 Status RecordWriter::write_buffer() {

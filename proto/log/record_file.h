@@ -40,8 +40,11 @@ public:
     RecordWriter& operator=(RecordWriter&& other) noexcept;
     ~RecordWriter();
 
-    /// One write(2). Where it fails (disk full) the file is cut back to the last whole record.
+    /// One write(2) of this record and the staged ones before it. Where it fails (disk full) the
+    /// file is cut back to the last whole record.
     Status write(std::string_view payload);
+    /// A record that goes out with the next write(), in the same write(2).
+    Status stage(std::string_view payload);
     /// Makes what was written survive a crash of the machine.
     Status sync();
 

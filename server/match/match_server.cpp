@@ -86,6 +86,10 @@ Result<std::unique_ptr<MatchServer>> MatchServer::create(const MatchSettings& se
         return log.error();
     }
     const LockstepServerSettings session = session_settings(settings, *simulation.value());
+    const Status started = log.value()->write_start_hash(session.initial_state_hash);
+    if (!started) {
+        return started.error();
+    }
     return std::unique_ptr<MatchServer>(
         new MatchServer(std::move(simulation).value(), std::move(log).value(), session, transport));
 }
@@ -105,6 +109,9 @@ void MatchServer::poll() {
     for (std::vector<Request> requests = session_.take_requests(); !requests.empty();
          requests = session_.take_requests()) {
         for (const Request& request : requests) {
+            if (failed_ && !failure_told_) {
+                break; // nobody may hear of a tick that was not stepped or is not in the log
+            }
             std::visit(
                 [this](const auto& wanted) {
                     using Wanted = std::decay_t<decltype(wanted)>;
@@ -119,6 +126,7 @@ void MatchServer::poll() {
                 },
                 request);
         }
+        failure_told_ = failed_;
         session_.update(transport_.clock_us());
     }
     history_.discard_before(session_.oldest_needed_tick());
@@ -151,32 +159,29 @@ void MatchServer::execute(const SendRequest& request) {
 }
 
 void MatchServer::execute(const PersistRequest& request) {
-    require_logged(log_->write_tick(request.tick, request.inputs));
+    require_logged(log_->write_tick(request.tick, request.inputs, hash_));
+    if (hash_ && LogWriter::keyframe_due(request.tick)) {
+        require_logged(
+            log_->write_keyframe(request.tick, *hash_, history_.find(request.tick)->bytes));
+    }
+    record_events(request.tick);
 }
 
 void MatchServer::execute(const AdvanceRequest& request) {
-    if (failed_) {
-        return;
-    }
     const std::uint64_t began_us = transport_.clock_us();
     if (const Status stepped = simulation_->advance(request.inputs); !stepped) {
         failed_ = true;
         session_.fail(stepped.error().message);
         return;
     }
-    const std::uint64_t hash = request.hash_due ? simulation_->state_hash() : 0;
+    hash_.reset();
+    if (request.hash_due) {
+        hash_ = simulation_->state_hash();
+        history_.save(*simulation_, *hash_);
+    }
     figures_.step_us.add(transport_.clock_us() - began_us);
     figures_.contacts.add(simulation_->world().counts().contacts);
-    if (request.hash_due) {
-        history_.save(*simulation_, hash);
-        require_logged(log_->write_hash(request.tick, hash));
-        if (LogWriter::keyframe_due(request.tick)) {
-            require_logged(
-                log_->write_keyframe(request.tick, hash, history_.find(request.tick)->bytes));
-        }
-    }
-    record_events(request.tick);
-    session_.advanced(request.tick, hash, began_us);
+    session_.advanced(request.tick, hash_.value_or(0), began_us);
 }
 
 void MatchServer::execute(const SnapshotRequest& request) {

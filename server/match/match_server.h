@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -100,8 +101,10 @@ private:
     EventListener listener_;
     MatchFigures figures_;
     std::vector<DesyncOutcome> desyncs_;
+    std::optional<std::uint64_t> hash_; // of the tick that was just stepped, where due
     std::uint64_t paused_at_us_ = 0;
     bool failed_ = false;
+    bool failure_told_ = false; // the list of requests in which it happened is over
     bool log_failed_ = false;
     bool finished_ = false;
     std::vector<Packet> packets_;      // scratch

@@ -90,9 +90,9 @@ struct LockstepServerCounters {
 /// confirms it, compares hashes. Sans-IO: it is told the time and what arrived, and asks for
 /// everything else.
 ///
-/// Per tick it asks, in this order: PersistRequest, SendRequest(Confirmation), AdvanceRequest. The
-/// record is written before anybody hears of the tick, and the clients step while the server does.
-/// The next tick begins only when this one has been reported by advanced().
+/// Per tick it asks, in this order: AdvanceRequest, PersistRequest, SendRequest(Confirmation). The
+/// record, with the tick's hash, is written before anybody hears of the tick. The next tick begins
+/// only when this one has been reported by advanced().
 ///
 /// A driver's loop: receive() all that arrived; update(now); take_requests() and execute them in
 /// order, until there are none; wait until next_deadline_us() or a message.
@@ -117,7 +117,8 @@ public:
     void snapshot_saved(Slot slot, Tick tick, std::uint64_t hash, std::vector<std::byte> bytes);
     /// No further ticks; settles the hashes and ends the match (SIGINT).
     void stop(const std::string& reason);
-    /// The simulation or the log failed: ends the match at once.
+    /// The simulation or the log failed: ends the match at once. The driver executes nothing more
+    /// of the list in which that happened, so that nobody hears of a tick that is not in the log.
     void fail(const std::string& message);
 
     MatchPhase phase() const;

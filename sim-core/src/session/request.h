@@ -70,7 +70,8 @@ struct SendRequest {
     Message message;
 };
 
-/// server: write the record of `tick` with one write, before any later request is executed.
+/// server: write the record of `tick`, and the hash that the AdvanceRequest before it found where
+/// that was due, by one write, before any later request is executed.
 struct PersistRequest {
     Tick tick = 0;
     std::vector<SlotInput> inputs;

@@ -94,12 +94,11 @@ inline std::unique_ptr<LogWriter> write_golden_match(const std::string& path, bo
     LogWriter& writer = *log.value();
     bool ok = true;
     const auto expect = [&](const Status& status) { ok = ok && status.ok(); };
-    expect(writer.write_hash(0, golden_hash(0)));
+    expect(writer.write_start_hash(golden_hash(0)));
     expect(writer.write_join({1, 0, false, "g++ 12"}));
     expect(writer.write_join({1, 1, true, "clang 14"}));
     for (Tick tick = 1; tick <= 4; ++tick) {
-        expect(writer.write_tick(tick, golden_inputs(tick)));
-        expect(writer.write_hash(tick, golden_hash(tick)));
+        expect(writer.write_tick(tick, golden_inputs(tick), golden_hash(tick)));
         if (tick == 2) {
             const std::vector<Event> events{{EventType::created, 7, 1, 0},
                                             {EventType::score, 1, 2, -5}};

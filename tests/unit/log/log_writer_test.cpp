@@ -76,7 +76,7 @@ TEST_F(LogWriterTest, CountsTheBytesOfTheFile) {
 
 TEST_F(LogWriterTest, HasATickInTheFileWhenWriteTickReturns) {
     const std::unique_ptr<LogWriter> writer = write_golden_match(path("match.log"), false);
-    ASSERT_TRUE(writer->write_tick(5, golden_inputs(5)).ok());
+    ASSERT_TRUE(writer->write_tick(5, golden_inputs(5), std::nullopt).ok());
     Result<LogReader> reader = LogReader::open(path("match.log"));
     ASSERT_TRUE(reader.ok());
     EXPECT_EQ(index_log(reader.value()).ticks, 5U);
@@ -123,7 +123,7 @@ TEST_F(LogWriterTest, CutsAHalfWrittenRecordOffAFullDisk) {
     const auto ignored = std::signal(SIGXFSZ, SIG_IGN);
     const rlimit full{size + 5, before.rlim_max};
     ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &full), 0);
-    const Status status = writer->write_tick(5, golden_inputs(5));
+    const Status status = writer->write_tick(5, golden_inputs(5), golden_hash(5));
     ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
     std::signal(SIGXFSZ, ignored);
     EXPECT_FALSE(status.ok());

@@ -132,7 +132,7 @@ DiffResult desync_of(SimulatedMatch& match) {
     EXPECT_EQ(match.server().desyncs().size(), 1U);
     const DesyncOutcome& outcome = match.server().desyncs().front();
     EXPECT_EQ(outcome.problem, "");
-    return diff_bundle(read_bundle(outcome.bundle).value()).value();
+    return diff_bundle(read_bundle(outcome.bundle).value());
 }
 
 TEST(Match, CorruptedStateIsCaughtAtItsTickAndTracedToItsField) {

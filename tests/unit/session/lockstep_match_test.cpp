@@ -47,7 +47,7 @@ TEST(LockstepMatch, ConfirmsEachSlotsOwnInputs) {
 
 TEST(LockstepMatch, OtherInputsGiveAnotherChain) {
     std::set<std::uint64_t> hashes;
-    for (const std::uint64_t token : {1, 2, 3}) {
+    for (const std::uint64_t token : {1U, 2U, 3U}) {
         VirtualMatch match(VirtualMatch::server_settings(1, 50));
         match.add_client(token);
         ASSERT_TRUE(match.run_to_end());
@@ -114,7 +114,7 @@ TEST(LockstepMatch, WritesEachTickBeforeAnybodyHearsOfIt) {
     EXPECT_GT(match.server.confirmed_ticks_checked, 200U);
 }
 
-TEST(LockstepMatch, AsksForPersistConfirmationAdvanceInThisOrder) {
+TEST(LockstepMatch, AsksForStepRecordConfirmationInThisOrder) {
     LockstepServerSettings settings = VirtualMatch::server_settings(1, 3);
     settings.start_delay_ms = 0;
     LockstepServer server(settings);
@@ -131,10 +131,10 @@ TEST(LockstepMatch, AsksForPersistConfirmationAdvanceInThisOrder) {
     server.update(5 + 16'666);
     const std::vector<Request> requests = server.take_requests();
     ASSERT_EQ(requests.size(), 3U);
-    EXPECT_EQ(std::get<PersistRequest>(requests[0]).tick, 1U);
-    const auto& confirmation = std::get<Confirmation>(std::get<SendRequest>(requests[1]).message);
+    EXPECT_EQ(std::get<AdvanceRequest>(requests[0]).tick, 1U);
+    EXPECT_EQ(std::get<PersistRequest>(requests[1]).tick, 1U);
+    const auto& confirmation = std::get<Confirmation>(std::get<SendRequest>(requests[2]).message);
     EXPECT_EQ(confirmation.confirmed_tick, 1U);
-    EXPECT_EQ(std::get<AdvanceRequest>(requests[2]).tick, 1U);
     EXPECT_EQ(server.confirmed_tick(), 1U);
     // The next tick waits for advanced(), however late it is.
     server.update(900'000);
@@ -260,7 +260,11 @@ TEST(LockstepMatch, AFailedStepEndsTheMatchForAll) {
     for (const auto& client : match.clients) {
         EXPECT_EQ(client->session.end_reason(), EndReason::failed);
     }
-    EXPECT_EQ(match.server.log.size(), 30U);
+    EXPECT_EQ(match.server.log.size(), 29U);
+    EXPECT_EQ(match.server.session.confirmed_tick(), 29U);
+    for (const auto& client : match.clients) {
+        EXPECT_EQ(client->session.confirmed_tick(), 29U); // nobody heard of tick 30
+    }
 }
 
 TEST(LockstepMatch, ClosesOnceEveryClientHasAnsweredTheEnd) {
