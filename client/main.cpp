@@ -1,6 +1,9 @@
 #include "bots_command.h"
+#include "diff_command.h"
+#include "info_command.h"
 #include "program/console.h"
 #include "program/exit_code.h"
+#include "replay_command.h"
 #include "scenes_command.h"
 #include "transport/dds/dds_participant.h"
 
@@ -16,6 +19,9 @@ namespace {
 /// What was asked for: one subcommand's options, and how to run it.
 struct Commands {
     BotsOptions bots;
+    ReplayCommandOptions replay;
+    DiffCommandOptions diff;
+    InfoCommandOptions info;
     ScenesOptions scenes;
     std::function<int()> run;
 };
@@ -33,7 +39,8 @@ void add_bots(CLI::App& app, Commands& commands) {
     command->add_option("--match", options.match, "name of the match")->capture_default_str();
     command->add_option("--behaviour", options.behaviour, "fight, wander, idle or log:FILE")
         ->capture_default_str();
-    command->add_option("--seed", options.seed, "of the bots' whims and tokens; drawn if not given");
+    command->add_option(
+        "--seed", options.seed, "of the bots' whims and tokens; drawn if not given");
     command->add_option("--net",
                         options.net,
                         "worse links: latency=40ms,jitter=10ms,loss=2%,duplicate=1%,reorder=1%");
@@ -45,6 +52,43 @@ void add_bots(CLI::App& app, Commands& commands) {
                         "test tool: changes state after every run of this phase");
     command->add_flag("--json", options.json, "print one JSON object on stdout at the end");
     command->callback([&commands] { commands.run = [&] { return run_bots(commands.bots); }; });
+}
+
+void add_replay(CLI::App& app, Commands& commands) {
+    ReplayCommandOptions& options = commands.replay;
+    CLI::App* command = app.add_subcommand("replay", "step a log's inputs again");
+    command->add_option("LOG", options.log, "the log")->required();
+    command->add_flag("--verify", options.verify, "compare every hash; exit 1 at a difference");
+    command->add_option("--from", options.from, "first tick to step, from the keyframe before it");
+    command->add_option("--to", options.to, "last tick to step");
+    command->add_option("--trace", options.trace, "write the hash after every phase to this file");
+    command->add_flag("--trace-states",
+                      options.trace_states,
+                      "with the states, so that a diff of traces names the field");
+    command->add_option("--snapshot", options.snapshot, "write the last state to this file");
+    command->add_option("--bisect", options.bisect, "another build's lockwind (not available)");
+    command->add_flag("--json", options.json, "print one JSON object on stdout");
+    command->callback([&commands] { commands.run = [&] { return run_replay(commands.replay); }; });
+}
+
+void add_diff(CLI::App& app, Commands& commands) {
+    DiffCommandOptions& options = commands.diff;
+    CLI::App* command = app.add_subcommand(
+        "diff", "the first divergence: of a bundle, or of two logs, traces or snapshots");
+    command->add_option("A", options.a, "a bundle, log, trace or snapshot")->required();
+    command->add_option("B", options.b, "what to compare it with; not for a bundle");
+    command->add_option("--junit", options.junit, "write JUnit XML to this file, for CI");
+    command->add_flag("--json", options.json, "print one JSON object on stdout");
+    command->callback([&commands] { commands.run = [&] { return run_diff(commands.diff); }; });
+}
+
+void add_info(CLI::App& app, Commands& commands) {
+    InfoCommandOptions& options = commands.info;
+    CLI::App* command = app.add_subcommand("info", "what a log, trace, bundle or snapshot holds");
+    command->add_option("FILE", options.file, "any file that the tools wrote")->required();
+    command->add_option("--export", options.export_file, "write it as plain protobuf to this file");
+    command->add_flag("--json", options.json, "print one JSON object on stdout");
+    command->callback([&commands] { commands.run = [&] { return run_info(commands.info); }; });
 }
 
 void add_scenes(CLI::App& app, Commands& commands) {
@@ -64,6 +108,9 @@ int run(int argc, char** argv) {
                "missing or damaged; 4 network trouble.");
     app.require_subcommand(1);
     add_bots(app, commands);
+    add_replay(app, commands);
+    add_diff(app, commands);
+    add_info(app, commands);
     add_scenes(app, commands);
     try {
         app.parse(argc, argv);
