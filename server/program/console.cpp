@@ -31,7 +31,11 @@ std::string describe(const SessionEvent& event) {
         line += fmt::format(", slot {}", event.slot);
     }
     line += fmt::format(", tick {}", event.tick);
-    if (!event.text.empty()) {
+    // Whoever comes is described by the build it runs: long, and in the log.
+    const bool arrival = event.kind == SessionEventKind::synchronizing ||
+                         event.kind == SessionEventKind::joined ||
+                         event.kind == SessionEventKind::reconnected;
+    if (!event.text.empty() && !arrival) {
         line += fmt::format(": {}", event.text);
     }
     return line;
