@@ -1,5 +1,7 @@
 #include "session/confirmed_history.h"
 
+#include "lockwind/assert.h"
+
 #include <utility>
 
 namespace lockwind {
@@ -13,6 +15,12 @@ void ConfirmedHistory::discard_before(Tick tick) {
     while (!ticks_.empty() && oldest_tick() < tick) {
         ticks_.pop_front();
     }
+}
+
+void ConfirmedHistory::retract() {
+    LOCKWIND_ASSERT(!ticks_.empty());
+    ticks_.pop_back();
+    --newest_tick_;
 }
 
 std::span<const SlotInput> ConfirmedHistory::find(Tick tick) const {

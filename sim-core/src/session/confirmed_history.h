@@ -20,6 +20,8 @@ public:
 
     void push(std::vector<SlotInput> inputs);
     void discard_before(Tick tick);
+    /// Takes back the newest one, which nobody has heard of.
+    void retract();
 
     Tick newest_tick() const { return newest_tick_; }
     /// First kept one; newest_tick() + 1 where none is.

@@ -48,7 +48,7 @@ void LockstepServer::stop(const std::string& reason) {
 }
 
 void LockstepServer::fail(const std::string& message) {
-    match_->end(EndReason::failed, message);
+    match_->fail(message);
 }
 
 MatchPhase LockstepServer::phase() const {

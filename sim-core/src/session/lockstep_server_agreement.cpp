@@ -99,10 +99,12 @@ void LockstepServer::Match::on_chunk(Slot slot, const Chunk& chunk) {
     if (outcome.ack) {
         send(roster_.at(slot).peer, *outcome.ack);
     }
-    for (Inquiry& inquiry : inquiries_) {
-        if (outcome.blob && inquiry.desync.slot == slot && !inquiry.resolved) {
-            resolve(inquiry, std::move(outcome.blob->bytes));
-        }
+    const auto inquiry =
+        std::find_if(inquiries_.begin(), inquiries_.end(), [slot](const Inquiry& candidate) {
+            return candidate.desync.slot == slot && !candidate.resolved;
+        });
+    if (outcome.blob && inquiry != inquiries_.end()) {
+        resolve(*inquiry, std::move(outcome.blob->bytes));
     }
 }
 
@@ -148,6 +150,13 @@ void LockstepServer::Match::stop(const std::string& reason) {
     } else if (phase == MatchPhase::running) {
         settle(EndReason::stopped, reason);
     }
+}
+
+void LockstepServer::Match::fail(const std::string& message) {
+    if (advancing()) {
+        confirmed.retract(); // it could not be stepped, hence was neither written nor told
+    }
+    end(EndReason::failed, message);
 }
 
 void LockstepServer::Match::end(EndReason reason, const std::string& message) {

@@ -28,6 +28,7 @@ public:
     void advanced(Tick tick, std::uint64_t hash, std::uint64_t step_began_us);
     void snapshot_saved(Slot slot, Tick tick, std::uint64_t hash, std::vector<std::byte> bytes);
     void stop(const std::string& reason);
+    void fail(const std::string& message);
     void end(EndReason reason, const std::string& message);
     Tick oldest_needed_tick() const;
     SlotStatus slot_status(Slot slot) const;

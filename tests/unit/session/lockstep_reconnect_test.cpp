@@ -120,7 +120,11 @@ TEST(LockstepReconnect, CatchesUpInPiecesAfterALongAbsence) {
     ASSERT_TRUE(match.run([&] { return back.session.phase() == ClientPhase::playing; }));
     const Tick backlog = match.server.session.confirmed_tick() - back.session.advanced_tick();
     EXPECT_GT(backlog, 150U);
+    const Tick confirmed = match.server.session.confirmed_tick();
     ASSERT_TRUE(match.run_to_end());
+    // Inputs of ticks that it knew to be confirmed would have come too late.
+    ASSERT_FALSE(back.inputs_given.empty());
+    EXPECT_GT(back.inputs_given.begin()->first, confirmed - 50);
     EXPECT_EQ(match.server.session.counters().reconnects, 1U);
     EXPECT_EQ(match.server.log.at(1500)[1].status, InputStatus::confirmed);
     match.expect_one_chain();

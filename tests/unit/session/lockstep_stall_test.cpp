@@ -59,12 +59,17 @@ TEST(LockstepStall, SubstituteRepeatsTheLastInputUntilTheSlotIsInTime) {
     match.clients[1]->gives_inputs = false;
     ASSERT_TRUE(match.run_to_tick(160));
     match.clients[1]->gives_inputs = true;
+    ASSERT_TRUE(match.run_to_tick(200));
+    match.clients[1]->gives_inputs = false; // who was in time again is waited for again
+    ASSERT_TRUE(match.run_to_tick(250));
+    match.clients[1]->gives_inputs = true;
     ASSERT_TRUE(match.run_to_end());
     EXPECT_EQ(match.server.session.end_reason(), EndReason::complete);
 
     const LockstepServerCounters& counters = match.server.session.counters();
     EXPECT_GE(counters.substituted_inputs, 90U);
-    EXPECT_EQ(counters.stalls, 1U); // who lags is not waited for again
+    EXPECT_EQ(counters.stalls, 2U); // who lags is not waited for
+    EXPECT_EQ(match.server.count(SessionEventKind::stalled), 2U);
     std::uint64_t substituted = 0;
     for (const auto& [tick, inputs] : match.server.log) {
         EXPECT_EQ(inputs[0].status, InputStatus::confirmed);

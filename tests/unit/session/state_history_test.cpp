@@ -31,7 +31,7 @@ TEST(StateHistory, KeepsTheNewestCapacityStates) {
 
 TEST(StateHistory, FindsTheNewestAtOrBeforeATickThatWasNotSaved) {
     StateHistory history(8);
-    for (const Tick tick : {4, 8, 12}) {
+    for (const Tick tick : {4U, 8U, 12U}) {
         history.put(tick, tick, bytes_of(tick));
     }
     EXPECT_EQ(history.find(9), nullptr);
@@ -70,7 +70,7 @@ TEST(StateHistory, SavesWhatTheSimulationLoads) {
         inputs[0].bytes[0] = static_cast<std::uint8_t>(i + 1);
         ASSERT_TRUE(simulation.advance(inputs).ok());
     }
-    for (const Tick tick : {2, 0, 1}) {
+    for (const Tick tick : {2U, 0U, 1U}) {
         ASSERT_TRUE(simulation.load(history.find(tick)->bytes).ok());
         EXPECT_EQ(simulation.tick(), tick);
         EXPECT_EQ(simulation.state_hash(), hashes[tick]);
