@@ -1,11 +1,10 @@
 #include "scenes_command.h"
 
-#include <cstdio>
+#include "scene/scene.h"
 
+#include <cstdio>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include "scene/scene.h"
 
 namespace lockwind {
 namespace {
