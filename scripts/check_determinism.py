@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Words that have no place in sim-core, because they could make two machines disagree (sim-core/README.md).
+"""Words that have no place in sim-core: they could make two machines disagree (sim-core/README.md).
 
 Usage: scripts/check_determinism.py [--root DIR]
 Prints file:line, the word and why; exits 1 if there is any. Comments and strings do not count.
@@ -40,8 +40,8 @@ DENIED = [(re.compile(pattern), why) for pattern, why in DENIED]
 
 STATIC = re.compile(r"\bstatic\b(?P<type>[^;={(\[]*)(?P<end>[;={(\[])")
 GLOBAL = re.compile(
-    r"^(?!(?:using|namespace|struct|class|enum|union|template|typedef|friend|static_assert|return|"
-    r"public|private|protected|case|__extension__|extern \"C\")\b|[}#])"
+    r"^(?!(?:using|namespace|inline namespace|struct|class|enum|union|template|typedef|friend|"
+    r"static_assert|return|public|private|protected|case|__extension__|extern \"C\")\b|[}#])"
     r"(?P<type>[A-Za-z_][\w:<>,*& ]*\s[*&]?)\w+\s*(?:=[^=;]*|\{[^;]*|\[[^;]*)?;", re.MULTILINE)
 MUTABLE_WHY = "mutable static: state outside the arena, shared by all worlds"
 
@@ -109,7 +109,8 @@ def main():
     default = pathlib.Path(__file__).resolve().parent.parent
     parser.add_argument("--root", type=pathlib.Path, default=default)
     root = parser.parse_args().root.resolve()
-    files = [path for path in sorted((root / "sim-core").rglob("*")) if path.suffix in (".h", ".cpp")]
+    files = [path for path in sorted((root / "sim-core").rglob("*"))
+             if path.suffix in (".h", ".cpp")]
     if not files:
         sys.exit(f"check_determinism: no sources under {root}/sim-core")
     count = 0
