@@ -37,9 +37,10 @@ bool all_within(std::span<const std::int32_t> values, std::int64_t limit) {
     });
 }
 
-/// Unit length of a Q2.30 vector of 3 or 4 components.
+/// Unit length of a Q2.30 vector of 3 or 4 components. Rounding leaves a component up to 5 ulp
+/// above 1.
 bool is_unit(std::span<const std::int32_t> vector) {
-    if (!all_within(vector, std::int64_t{1} << 30U)) {
+    if (!all_within(vector, (std::int64_t{1} << 30U) + (std::int64_t{1} << 14U))) {
         return false;
     }
     std::int64_t square = 0;
