@@ -8,12 +8,12 @@
 #include <array>
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <fcntl.h>
 #include <filesystem>
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <system_error>
 #include <unistd.h>
 #include <vector>
 
@@ -135,7 +135,7 @@ int run_bisect(const ReplayCommandOptions& options) {
     const TemporaryFolder folder;
     const Result<DiffResult> diff =
         folder.path().empty()
-            ? Result<DiffResult>(Error{std::string("no temporary folder: ") + std::strerror(errno)})
+            ? Result<DiffResult>(Error{std::string("no temporary folder: ") + std::generic_category().message(errno)})
             : bisect(options, folder.path());
     if (!diff) {
         say_error("--bisect: " + diff.error().message);

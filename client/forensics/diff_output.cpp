@@ -46,8 +46,8 @@ void add_more_fields(const DiffResult& result, std::string& text) {
     }
     text += "  " + std::to_string(result.field_count - 1) + " more:\n";
     std::size_t width = 0;
-    for (const FieldDiff& field : result.fields) {
-        width = std::max(width, place_text(field).size());
+    for (std::size_t index = 1; index < result.fields.size(); ++index) {
+        width = std::max(width, place_text(result.fields[index]).size());
     }
     for (std::size_t index = 1; index < result.fields.size(); ++index) {
         const FieldDiff& field = result.fields[index];

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <system_error>
 #include <unistd.h>
 #include <utility>
 
@@ -31,7 +32,7 @@ std::string_view magic_of(FileKind kind) {
 }
 
 Error system_error(const std::string& path, std::string_view what, int code) {
-    return Error{path + ": " + std::string(what) + ": " + std::strerror(code)};
+    return Error{path + ": " + std::string(what) + ": " + std::generic_category().message(code)};
 }
 
 Error exists_error(const std::string& path) {
