@@ -33,6 +33,7 @@ public:
 
     void run(std::int32_t substep_rate, std::int32_t separation_max) {
         load();
+        LOCKWIND_UNROLL
         for (std::uint32_t point = 0; point < points_; ++point) {
             make_separation(point, substep_rate, separation_max);
             make_normal_row(point);
@@ -81,6 +82,7 @@ private:
         return L::template round<Shift>(add_dot(L::template start<Shift>(), a, b));
     }
     static void cross(const Vector a[3], const Vector b[3], Vector out[3]) {
+        LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             const int next = (axis + 1) % 3;
             const int last = (axis + 2) % 3;
@@ -95,6 +97,7 @@ private:
                           const Vector direction[3],
                           Vector out[3]) {
         Vector scaled[3];
+        LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             scaled[axis] = L::template multiply<kLengthFraction + kEffectiveMassFraction -
                                                 kCoefficientFraction>(arm[axis], inverse_radius);
@@ -104,8 +107,10 @@ private:
     /// inverse inertia x row x share
     static void respond(const Vector inertia[6], const Vector row[3], Vector share, Vector out[3]) {
         constexpr int kIndex[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+        LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             Wide sum = L::template start<kInertiaFraction>();
+            LOCKWIND_UNROLL
             for (int column = 0; column < 3; ++column) {
                 sum = L::add_product(sum, inertia[kIndex[axis][column]], row[column]);
             }
@@ -157,6 +162,7 @@ private:
 
 template <class L>
 void BlockPreparation<L>::load() {
+    LOCKWIND_UNROLL
     for (int axis = 0; axis < 3; ++axis) {
         axes_[0][axis] = of_manifold([&](const Manifold& m) { return m.normal[axis]; });
         axes_[1][axis] = of_manifold([&](const Manifold& m) { return m.tangent[axis]; });
@@ -166,6 +172,7 @@ void BlockPreparation<L>::load() {
         constexpr int kShift = kUnitFraction - kCoefficientFraction;
         return L::template shift_right<kShift>(L::add(unit, L::set(1 << (kShift - 1))));
     };
+    LOCKWIND_UNROLL
     for (int axis = 0; axis < 3; ++axis) {
         set_lane(block_.normal[axis], narrow(axes_[0][axis]));
         set_lane(block_.tangent[0][axis], narrow(axes_[1][axis]));
@@ -179,11 +186,13 @@ void BlockPreparation<L>::load() {
     const auto of_b = [&](auto&& source) {
         return L::gather(first_, [&](int lane) { return source(*terms_.body_b[lane]); });
     };
+    LOCKWIND_UNROLL
     for (int entry = 0; entry < 9; ++entry) {
         const auto rotation = [=](const BodyTerms& body) { return body.rotation[entry]; };
         rotation_a_[entry] = of_a(rotation);
         rotation_b_[entry] = of_b(rotation);
     }
+    LOCKWIND_UNROLL
     for (int entry = 0; entry < 6; ++entry) {
         const auto inertia = [=](const BodyTerms& body) { return body.inverse_inertia[entry]; };
         inertia_a_[entry] = of_a(inertia);
@@ -202,6 +211,7 @@ void BlockPreparation<L>::make_separation(std::uint32_t point,
     const auto entry = static_cast<int>(3 * point);
     Vector local_a[3];
     Vector local_b[3];
+    LOCKWIND_UNROLL
     for (int axis = 0; axis < 3; ++axis) {
         const int index = entry + axis;
         local_a[axis] = of_manifold([=](const Manifold& m) { return m.local_a[index]; });
@@ -212,6 +222,7 @@ void BlockPreparation<L>::make_separation(std::uint32_t point,
                         of_manifold([=](const Manifold& m) { return m.centre_delta[axis]; }));
     }
     Vector apart[3];
+    LOCKWIND_UNROLL
     for (int axis = 0; axis < 3; ++axis) {
         const Vector now_a = dot<kUnitFraction>(rotation_a_ + 3 * axis, local_a);
         const Vector now_b = dot<kUnitFraction>(rotation_b_ + 3 * axis, local_b);
@@ -237,6 +248,7 @@ typename BlockPreparation<L>::Jacobian BlockPreparation<L>::jacobian_of(
     const Vector arm_a[3], const Vector arm_b[3], const Vector along[3]) const {
     Jacobian jacobian;
     lever_row(arm_a, inverse_radius_a_, along, jacobian.a);
+    LOCKWIND_UNROLL
     for (Vector& entry : jacobian.a) {
         entry = L::negate(entry);
     }
@@ -253,6 +265,7 @@ void BlockPreparation<L>::fill_row(const Jacobian& jacobian, ContactBlock::Row& 
     Wide sum = add_dot(L::template start<kShift>(), jacobian.a, response.a);
     sum = add_dot(sum, jacobian.b, response.b);
     set_lane(row.mass, effective_mass(1 << kEffectiveMassFraction, sum));
+    LOCKWIND_UNROLL
     for (int axis = 0; axis < 3; ++axis) {
         set_lane(row.jacobian_a[axis], jacobian.a[axis]);
         set_lane(row.jacobian_b[axis], jacobian.b[axis]);
@@ -270,9 +283,11 @@ void BlockPreparation<L>::make_normal_row(std::uint32_t point) {
         std::int32_t(&mass)[kBlockLanes] = block_.point[point].row.mass;
         set_lane(mass, of_point(point, lane(mass)));
     }
+    LOCKWIND_UNROLL
     for (std::uint32_t other = 0; other < point; ++other) {
         const ContactBlock::Row& row = block_.point[other].row;
         Wide sum = L::template start<kCoefficientFraction>();
+        LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             sum = L::add_product(sum, jacobian.a[axis], lane(row.response_a[axis]));
             sum = L::add_product(sum, jacobian.b[axis], lane(row.response_b[axis]));
@@ -286,15 +301,18 @@ void BlockPreparation<L>::make_normal_row(std::uint32_t point) {
 template <class L>
 void BlockPreparation<L>::find_friction_centre() {
     Vector total = L::set(0);
+    LOCKWIND_UNROLL
     for (std::uint32_t point = 0; point < points_; ++point) {
         total = L::add(total, weight_[point]);
     }
     // A lane without a contact has no weight: it must not divide by 0.
     const Vector least = L::set(kCoefficientOne / 16);
     const Vector inverse = L::template reciprocal<54>(L::maximum(total, least)); // Q5.26
+    LOCKWIND_UNROLL
     for (int axis = 0; axis < 3; ++axis) {
         Wide sum_a = L::template start<kCoefficientFraction>();
         Wide sum_b = sum_a;
+        LOCKWIND_UNROLL
         for (std::uint32_t point = 1; point < points_; ++point) {
             const Vector part = L::template multiply<26>(weight_[point], inverse);
             sum_a = L::add_product(sum_a, part, L::subtract(arm_a_[point][axis], arm_a_[0][axis]));
@@ -311,8 +329,10 @@ void BlockPreparation<L>::make_levers() {
     const Vector inverse_radius = lane(terms_.inverse_radius_min);
     const Vector longest = lane(terms_.lever_max);
     const Vector bound = L::set((8 << kLengthFraction) - 1);
+    LOCKWIND_UNROLL
     for (std::uint32_t point = 0; point < points_; ++point) {
         Vector from_centre[3];
+        LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             from_centre[axis] = L::clamp(
                 L::subtract(arm_a_[point][axis], centre_a_[axis]), L::negate(bound), bound);
@@ -335,6 +355,7 @@ void BlockPreparation<L>::make_tangent_coupling() {
     const ContactBlock::Row& first = block_.tangent_row[0];
     const ContactBlock::Row& second = block_.tangent_row[1];
     Wide sum = L::template start<kCoefficientFraction>();
+    LOCKWIND_UNROLL
     for (int axis = 0; axis < 3; ++axis) {
         sum = L::add_product(sum, lane(second.jacobian_a[axis]), lane(first.response_a[axis]));
         sum = L::add_product(sum, lane(second.jacobian_b[axis]), lane(first.response_b[axis]));
@@ -347,6 +368,7 @@ void BlockPreparation<L>::make_twist_row() {
     const Vector lever_a = lane(block_.twist_lever_a);
     const Vector lever_b = lane(block_.twist_lever_b);
     Jacobian jacobian;
+    LOCKWIND_UNROLL
     for (int axis = 0; axis < 3; ++axis) {
         jacobian.a[axis] = L::template multiply<kUnitFraction>(lever_a, axes_[0][axis]);
         jacobian.b[axis] = L::template multiply<kUnitFraction>(lever_b, axes_[0][axis]);
@@ -358,6 +380,7 @@ void BlockPreparation<L>::make_twist_row() {
     Wide sum = add_dot(L::template start<kShift>(), jacobian.a, response.a);
     sum = add_dot(sum, jacobian.b, response.b);
     set_lane(block_.twist_mass, effective_mass(0, sum));
+    LOCKWIND_UNROLL
     for (int axis = 0; axis < 3; ++axis) {
         set_lane(block_.twist_response_a[axis], response.a[axis]);
         set_lane(block_.twist_response_b[axis], response.b[axis]);

@@ -23,9 +23,10 @@ public:
         : block_(block), bodies_(bodies), first_(first) {}
 
     /// Applies the impulses that the contacts brought from the tick before.
-    void warm_start() {
+    [[gnu::always_inline]] void warm_start() {
         read_velocities();
         Vector impulse[kPoints];
+        LOCKWIND_UNROLL
         for (std::uint32_t point = 0; point < kPoints; ++point) {
             impulse[point] = lane(block_.point[point].impulse);
         }
@@ -38,11 +39,12 @@ public:
     }
 
     /// Normal rows with their soft bias.
-    void solve() {
+    [[gnu::always_inline]] void solve() {
         read_velocities();
         Vector speed[kPoints];
         find_speeds(linear_, angular_, speed);
         Vector applied[kPoints];
+        LOCKWIND_UNROLL
         for (std::uint32_t point = 0; point < kPoints; ++point) {
             const ContactBlock::Point& p = block_.point[point];
             const Vector separation = lane(p.separation);
@@ -63,7 +65,7 @@ public:
 
     /// After the position step: moves the separations on, removes what the bias added to the
     /// velocities, then twist and friction.
-    void relax() {
+    [[gnu::always_inline]] void relax() {
         read_velocities();
         Vector speed[kPoints];
         find_speeds(linear_, angular_, speed);
@@ -72,6 +74,7 @@ public:
         Vector applied[kPoints];
         Vector load = L::set(0);
         Vector twist_load = L::set(0);
+        LOCKWIND_UNROLL
         for (std::uint32_t point = 0; point < kPoints; ++point) {
             ContactBlock::Point& p = block_.point[point];
             const Vector separation = L::add(lane(p.separation), moved[point]);
@@ -122,14 +125,17 @@ private:
         Vector b[3];
     };
 
-    Vector lane(const std::int32_t (&lanes)[kBlockLanes]) const { return L::load(lanes + first_); }
+    [[gnu::always_inline]] Vector lane(const std::int32_t (&lanes)[kBlockLanes]) const {
+        return L::load(lanes + first_);
+    }
     static Vector scale(Vector velocity, Vector coefficient) {
         return L::template multiply<kCoefficientFraction>(velocity, coefficient);
     }
     static Wide start() { return L::template start<kCoefficientFraction>(); }
     static Vector finish(Wide sum) { return L::template round<kCoefficientFraction>(sum); }
 
-    void read_velocities() {
+    [[gnu::always_inline]] void read_velocities() {
+        LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             linear_.a[axis] = L::gather(
                 first_, [&](int lane) { return bodies_[block_.row_a[lane]].linear[axis]; });
@@ -141,7 +147,8 @@ private:
                 first_, [&](int lane) { return bodies_[block_.row_b[lane]].angular[axis]; });
         }
     }
-    void write_velocities() {
+    [[gnu::always_inline]] void write_velocities() {
+        LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             L::scatter(first_, linear_.a[axis], [&](int lane, std::int32_t value) {
                 bodies_[block_.row_a[lane]].linear[axis] = value;
@@ -159,17 +166,20 @@ private:
     }
 
     /// Approach speeds J v of the points.
-    void find_speeds(const Velocities& linear,
-                     const Velocities& angular,
-                     Vector (&speed)[kPoints]) const {
+    [[gnu::always_inline]] void find_speeds(const Velocities& linear,
+                                            const Velocities& angular,
+                                            Vector (&speed)[kPoints]) const {
         Wide along = start();
+        LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             along = L::add_product(
                 along, L::subtract(linear.b[axis], linear.a[axis]), lane(block_.normal[axis]));
         }
+        LOCKWIND_UNROLL
         for (std::uint32_t point = 0; point < kPoints; ++point) {
             const ContactBlock::Row& row = block_.point[point].row;
             Wide sum = along;
+            LOCKWIND_UNROLL
             for (int axis = 0; axis < 3; ++axis) {
                 sum = L::add_product(sum, angular.a[axis], lane(row.jacobian_a[axis]));
                 sum = L::add_product(sum, angular.b[axis], lane(row.jacobian_b[axis]));
@@ -178,9 +188,10 @@ private:
         }
     }
     /// The same of the velocities that moved the bodies: the change of s / h.
-    void find_moved(Vector (&moved)[kPoints]) const {
+    [[gnu::always_inline]] void find_moved(Vector (&moved)[kPoints]) const {
         Velocities linear;
         Velocities angular;
+        LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             linear.a[axis] = L::gather(
                 first_, [&](int lane) { return bodies_[block_.row_a[lane]].linear_moved[axis]; });
@@ -201,31 +212,35 @@ private:
             return speed;
         }
         Wide sum = start();
+        LOCKWIND_UNROLL
         for (std::uint32_t other = 0; other < point; ++other) {
             const int index = coupling_index(static_cast<int>(point), static_cast<int>(other));
             sum = L::add_product(sum, applied[other], lane(block_.coupling[index]));
         }
         return L::add(speed, finish(sum));
     }
-    Vector accumulate(std::uint32_t point, Vector old, Vector lost) {
+    [[gnu::always_inline]] Vector accumulate(std::uint32_t point, Vector old, Vector lost) {
         const Vector now = L::maximum(L::subtract(old, lost), L::set(0));
         L::store(block_.point[point].impulse + first_, now);
         return L::subtract(now, old);
     }
 
-    void apply_normal(const Vector (&impulse)[kPoints]) {
+    [[gnu::always_inline]] void apply_normal(const Vector (&impulse)[kPoints]) {
         Vector total = impulse[0];
+        LOCKWIND_UNROLL
         for (std::uint32_t point = 1; point < kPoints; ++point) {
             total = L::add(total, impulse[point]);
         }
         const Vector to_a = scale(total, lane(block_.share_a));
         const Vector to_b = scale(total, lane(block_.share_b));
+        LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             const Vector normal = lane(block_.normal[axis]);
             linear_.a[axis] = L::subtract(linear_.a[axis], scale(to_a, normal));
             linear_.b[axis] = L::add(linear_.b[axis], scale(to_b, normal));
             Wide sum_a = start();
             Wide sum_b = start();
+            LOCKWIND_UNROLL
             for (std::uint32_t point = 0; point < kPoints; ++point) {
                 const ContactBlock::Row& row = block_.point[point].row;
                 sum_a = L::add_product(sum_a, impulse[point], lane(row.response_a[axis]));
@@ -236,7 +251,7 @@ private:
         }
     }
 
-    void apply_tangent(Vector first, Vector second) {
+    [[gnu::always_inline]] void apply_tangent(Vector first, Vector second) {
         const Vector share_a = lane(block_.share_a);
         const Vector share_b = lane(block_.share_b);
         const Vector to_a[2] = {scale(first, share_a), scale(second, share_a)};
@@ -246,6 +261,7 @@ private:
         const auto sum_of = [](Vector x, Vector by_x, Vector y, Vector by_y) {
             return finish(L::add_product(L::add_product(start(), x, by_x), y, by_y));
         };
+        LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             const Vector tangent_0 = lane(block_.tangent[0][axis]);
             const Vector tangent_1 = lane(block_.tangent[1][axis]);
@@ -262,7 +278,8 @@ private:
         }
     }
 
-    void apply_twist(Vector impulse) {
+    [[gnu::always_inline]] void apply_twist(Vector impulse) {
+        LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             angular_.a[axis] =
                 L::add(angular_.a[axis], scale(impulse, lane(block_.twist_response_a[axis])));
@@ -271,9 +288,10 @@ private:
         }
     }
 
-    void relax_twist(Vector limit) {
+    [[gnu::always_inline]] void relax_twist(Vector limit) {
         Wide spin_a = start();
         Wide spin_b = start();
+        LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             const Vector normal = lane(block_.normal[axis]);
             spin_a = L::add_product(spin_a, angular_.a[axis], normal);
@@ -290,10 +308,12 @@ private:
         apply_twist(L::subtract(now, old));
     }
 
-    void relax_friction(Vector limit) {
+    [[gnu::always_inline]] void relax_friction(Vector limit) {
         Wide sum[2] = {start(), start()};
+        LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             const Vector sliding = L::subtract(linear_.b[axis], linear_.a[axis]);
+            LOCKWIND_UNROLL
             for (int which = 0; which < 2; ++which) {
                 const ContactBlock::Row& row = block_.tangent_row[which];
                 sum[which] = L::add_product(sum[which], sliding, lane(block_.tangent[which][axis]));
