@@ -131,7 +131,7 @@ int run_diff(const DiffCommandOptions& options) {
     if (!options.junit.empty()) {
         PublishedFile file(options.junit);
         file.write(diff_junit(diff, options.a + (options.b.empty() ? "" : " " + options.b)));
-        if (Status status = file.publish(); !status) {
+        if (Status status = file.replace(); !status) {
             say_error(status.error().message);
             return kExitUsage;
         }

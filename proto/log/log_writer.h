@@ -30,9 +30,9 @@ public:
 
     /// Hash of state(0); before the first tick.
     Status write_start_hash(std::uint64_t hash);
-    /// Inputs of a tick and, where it is due, the hash of state(tick): two records, one write(2), so
-    /// that a kill leaves no tick that cannot be verified. Call before the tick's confirmation is
-    /// sent. Ticks are consecutive from 1; one input per slot, none of them predicted.
+    /// Inputs of a tick and, where it is due, the hash of state(tick): two records, one write(2),
+    /// so that a kill leaves no tick that cannot be verified. Call before the tick's confirmation
+    /// is sent. Ticks are consecutive from 1; one input per slot, none of them predicted.
     Status
     write_tick(Tick tick, std::span<const SlotInput> inputs, std::optional<std::uint64_t> hash);
     /// True where state(tick) is due as a keyframe (every kKeyframeIntervalTicks).

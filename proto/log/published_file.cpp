@@ -37,13 +37,27 @@ void PublishedFile::write_field(int number, const google::protobuf::MessageLite&
     write(message.SerializeAsString());
 }
 
-Status PublishedFile::publish() {
+Status PublishedFile::close() {
     out_.close();
-    if (!out_) {
-        return Error{path_ + ": cannot be written"};
+    return out_ ? Status(Success{}) : Error{path_ + ": cannot be written"};
+}
+
+Status PublishedFile::publish() {
+    if (Status closed = close(); !closed) {
+        return closed;
     }
     published_ = true; // publish_file removes the partial file where it fails
     return publish_file(partial_, path_);
+}
+
+Status PublishedFile::replace() {
+    if (Status closed = close(); !closed) {
+        return closed;
+    }
+    std::error_code code;
+    std::filesystem::rename(partial_, path_, code);
+    published_ = !code;
+    return published_ ? Status(Success{}) : Error{path_ + ": " + code.message()};
 }
 
 } // namespace lockwind
