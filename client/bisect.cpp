@@ -134,9 +134,9 @@ Result<DiffResult> bisect(const ReplayCommandOptions& options, const std::string
 int run_bisect(const ReplayCommandOptions& options) {
     const TemporaryFolder folder;
     const Result<DiffResult> diff =
-        folder.path().empty()
-            ? Result<DiffResult>(Error{std::string("no temporary folder: ") + std::generic_category().message(errno)})
-            : bisect(options, folder.path());
+        folder.path().empty() ? Result<DiffResult>(Error{std::string("no temporary folder: ") +
+                                                         std::generic_category().message(errno)})
+                              : bisect(options, folder.path());
     if (!diff) {
         say_error("--bisect: " + diff.error().message);
         return kExitUsage;
