@@ -33,6 +33,8 @@ constexpr bool isinf(Fixed<Raw, FractionBits> /*value*/) {
 } // namespace LOCKWIND_ARITHMETIC
 } // namespace lockwind
 
+// NOLINTBEGIN(readability-identifier-naming): the names are those of std and Eigen.
+
 namespace std {
 
 /// What Eigen's decompositions ask for.
@@ -124,15 +126,15 @@ public:
         const Vec3 second = cross(unit, a);
         v_ << a.x, second.x, unit.x, a.y, second.y, unit.y, a.z, second.z, unit.z;
     }
-    const Matrix<lockwind::Real, 3, 3>& matrixV() const { // NOLINT(readability-identifier-naming)
-        return v_;
-    }
+    const Matrix<lockwind::Real, 3, 3>& matrixV() const { return v_; }
 
 private:
     Matrix<lockwind::Real, 3, 3> v_;
 };
 
 } // namespace Eigen
+
+// NOLINTEND(readability-identifier-naming)
 
 namespace lockwind {
 inline namespace LOCKWIND_ARITHMETIC {

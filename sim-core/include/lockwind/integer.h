@@ -38,6 +38,7 @@ constexpr Division
 divide_digit(std::uint64_t remainder, std::uint64_t digit, std::uint64_t divisor) {
     const std::uint64_t divisor_high = divisor >> 32U;
     const std::uint64_t divisor_low = divisor & 0xffffffffU;
+    // NOLINTNEXTLINE(clang-analyzer-core.DivideZero): the top bit of the divisor is set
     std::uint64_t estimate = remainder / divisor_high;
     std::uint64_t rest = remainder % divisor_high;
     while ((estimate >> 32U) != 0 || estimate * divisor_low > ((rest << 32U) | digit)) {
@@ -55,6 +56,7 @@ divide_digit(std::uint64_t remainder, std::uint64_t digit, std::uint64_t divisor
 /// floor(numerator / divisor), numerator.high < divisor, by two digits of 32 bits:
 /// Knuth, The Art of Computer Programming, volume 2, 4.3.1, algorithm D.
 constexpr Division divide_portable(const UInt128& numerator, std::uint64_t divisor) {
+    LOCKWIND_ASSERT(numerator.high < divisor);
     const int shift = std::countl_zero(divisor);
     const std::uint64_t scaled = divisor << shift;
     const UInt128 n = numerator << shift;
@@ -81,6 +83,7 @@ constexpr Division divide(const UInt128& numerator, std::uint64_t divisor) {
 
 /// floor(numerator / divisor) with all its 128 bits; divisor > 0.
 constexpr UInt128 divide_wide(const UInt128& numerator, std::uint64_t divisor) {
+    LOCKWIND_ASSERT(divisor != 0);
     const std::uint64_t high = numerator.high / divisor;
     return {high, divide({numerator.high % divisor, numerator.low}, divisor).quotient};
 }
@@ -145,6 +148,7 @@ constexpr std::uint64_t floor_sqrt128(const UInt128& value) {
     // (rest * 2^32 + next digit) / (2 high), halved on both sides to fit: rest <= 2 high < 2^33.
     const std::uint64_t digit = n.low >> 32U;
     const std::uint64_t half = (rest << 31U) + (digit >> 1U);
+    // NOLINTNEXTLINE(clang-analyzer-core.DivideZero): high >= 2^31
     const std::uint64_t quotient = half / high;
     const std::uint64_t left = ((half % high) << 1U) + (digit & 1U);
     const UInt128 remainder{left >> 32U, (left << 32U) | (n.low & 0xffffffffU)};

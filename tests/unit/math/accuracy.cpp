@@ -151,7 +151,7 @@ std::vector<Accuracy> measure_accuracy(int samples) {
         {"rotate", "below 1", "twice half up", measure(rotate_error), 2.5},
         {"sin(Angle)", "all", "nearest", measure(sine_error), 0.501},
         {"cos(Angle)", "all", "nearest", measure(cosine_error), 0.501},
-        {"sincos<Unit>", "all", "nearest", measure(unit_circle_error), 0.501},
+        {"sincos in Unit", "all", "nearest", measure(unit_circle_error), 0.501},
         {"sin, cos(radians)", "below 2^10 rad", "nearest", measure(sine_of_radians_error), 0.501},
         {"atan2, radians", "all", "nearest", measure(atan2_error), 0.503},
     };

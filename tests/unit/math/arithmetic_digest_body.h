@@ -48,7 +48,7 @@ private:
     std::uint64_t state_ = 0;
 };
 
-std::uint64_t arithmetic_digest() {
+inline std::uint64_t arithmetic_digest() {
     using namespace lockwind;
     Digest digest;
     Operands operands;

@@ -17,8 +17,8 @@ std::ostream& operator<<(std::ostream& out, Fixed<Raw, FractionBits> value) {
                << value.raw() << ')';
 }
 
-inline void PrintTo(const Vec3& v, std::ostream* out) {
-    *out << v.x << ' ' << v.y << ' ' << v.z;
+inline std::ostream& operator<<(std::ostream& out, const Vec3& v) {
+    return out << v.x << ' ' << v.y << ' ' << v.z;
 }
 
 /// Seeded draws whose magnitudes are spread over all powers of two, edges included.
