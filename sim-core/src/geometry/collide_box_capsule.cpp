@@ -54,7 +54,8 @@ std::int32_t zero_of(const Bracket& bracket) {
     // Both slopes scaled to 62 bits, the quotient in Q30.
     const std::int64_t range = bracket.slope_high - bracket.slope_low;
     const int shift = std::countl_zero(static_cast<std::uint64_t>(range)) - 1;
-    const std::int64_t divisor = (range << shift) >> kUnitFraction;
+    // Bit 32 is the leading one of the scaled range, which is not 0: naming it changes nothing.
+    const std::int64_t divisor = ((range << shift) >> kUnitFraction) | (std::int64_t{1} << 32);
     const std::int64_t fraction =
         clamped<std::int64_t>((-bracket.slope_low << shift) / divisor, 0, kUnitOne);
     return bracket.low + round_unit((std::int64_t{bracket.high} - bracket.low) * fraction);
