@@ -47,6 +47,7 @@ private:
 /// Runs a program to its end, its stdout thrown away. Its exit code, or -1.
 int run_program(const std::vector<std::string>& arguments) {
     std::vector<char*> pointers;
+    pointers.reserve(arguments.size() + 1);
     for (const std::string& argument : arguments) {
         pointers.push_back(const_cast<char*>(argument.c_str()));
     }

@@ -31,7 +31,7 @@ struct Seat {
     std::unique_ptr<Bot> bot;
 };
 
-int fail(ExitCode code, const std::string& message) {
+int fail(int code, const std::string& message) {
     say_error(message);
     return code;
 }
@@ -133,6 +133,7 @@ void play(std::vector<Seat>& seats, DdsParticipant& participant) {
 
 std::vector<const Bot*> bots_of(const std::vector<Seat>& seats) {
     std::vector<const Bot*> bots;
+    bots.reserve(seats.size());
     for (const Seat& seat : seats) {
         bots.push_back(seat.bot.get());
     }

@@ -10,6 +10,8 @@
 #include "lockwind/world_simulation.h"
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
 #include <fmt/format.h>
 
 namespace lockwind {
@@ -66,7 +68,9 @@ void add_replay(CLI::App& app, Commands& commands) {
                       options.trace_states,
                       "with the states, so that a diff of traces names the field");
     command->add_option("--snapshot", options.snapshot, "write the last state to this file");
-    command->add_option("--bisect", options.bisect, "another build's lockwind (not available)");
+    command->add_option("--bisect",
+                        options.bisect,
+                        "another build's lockwind: trace both, print the first divergence");
     command->add_flag("--json", options.json, "print one JSON object on stdout");
     command->callback([&commands] { commands.run = [&] { return run_replay(commands.replay); }; });
 }
@@ -127,7 +131,10 @@ int run(int argc, char** argv) {
 
 } // namespace lockwind
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     lockwind::set_up_messages();
     return lockwind::run(argc, argv);
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return lockwind::kExitFile;
 }

@@ -1,5 +1,6 @@
 #include "scenes_command.h"
 
+#include "program/exit_code.h"
 #include "scene/scene.h"
 
 #include <cstdio>
@@ -10,10 +11,6 @@ namespace lockwind {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr int kExitDone = 0;
-constexpr int kExitWrongInput = 2;
-constexpr int kExitUnreadable = 3;
 
 Json describe(const SceneReport& report) {
     return {{"name", report.name},
@@ -39,11 +36,11 @@ int fail(const ScenesOptions& options, const Error& error, int exit_code) {
 
 int check(const ScenesOptions& options) {
     if (const auto text = load_scene_text(options.check); !text) {
-        return fail(options, text.error(), kExitUnreadable);
+        return fail(options, text.error(), kExitFile);
     }
     const Result<SceneReport> report = check_scene(options.check);
     if (!report) {
-        return fail(options, report.error(), kExitWrongInput);
+        return fail(options, report.error(), kExitUsage);
     }
     if (options.json) {
         Json json = {{"scene", options.check}, {"ok", true}};
@@ -66,7 +63,7 @@ int list(const ScenesOptions& options) {
     for (const BuiltInScene& scene : built_in_scenes()) {
         const Result<SceneReport> report = check_scene(scene.name);
         if (!report) {
-            return fail(options, report.error(), kExitWrongInput);
+            return fail(options, report.error(), kExitUsage);
         }
         scenes.push_back(describe(report.value()));
     }

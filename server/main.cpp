@@ -11,6 +11,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -23,7 +24,7 @@ namespace {
 /// Longest sleep, so that a stop signal is heard soon.
 constexpr std::uint64_t kWaitUsMax = 50'000;
 
-int fail(ExitCode code, const std::string& message) {
+int fail(int code, const std::string& message) {
     say_error(message);
     return code;
 }
@@ -136,8 +137,11 @@ int run(ServerOptions options) {
 
 } // namespace lockwind
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     lockwind::set_up_messages();
     const lockwind::ParsedOptions parsed = lockwind::parse_options(argc, argv);
     return parsed.options ? lockwind::run(*parsed.options) : parsed.exit_code;
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return lockwind::kExitFile;
 }

@@ -111,19 +111,7 @@ void Bot::poll() {
     for (std::vector<Request> requests = session_.take_requests(); !requests.empty();
          requests = session_.take_requests()) {
         for (const Request& request : requests) {
-            std::visit(
-                [this](const auto& wanted) {
-                    using Wanted = std::decay_t<decltype(wanted)>;
-                    if constexpr (requires { this->execute(wanted); }) {
-                        execute(wanted);
-                    } else {
-                        static_assert(std::is_same_v<Wanted, PersistRequest> ||
-                                      std::is_same_v<Wanted, SnapshotRequest> ||
-                                      std::is_same_v<Wanted, BundleRequest>);
-                        LOCKWIND_ASSERT(!"a server's request");
-                    }
-                },
-                request);
+            std::visit([this](const auto& wanted) { execute(wanted); }, request);
         }
         decide_inputs();
         session_.update(transport_.clock_us());

@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace lockwind {
@@ -69,6 +70,14 @@ private:
     void execute(const RestoreRequest& request);
     void execute(const DesyncReportRequest& request);
     void execute(const NotifyRequest& request);
+    /// A server's request, which this session never makes.
+    template <class Other>
+    void execute(const Other& /*request*/) {
+        static_assert(std::is_same_v<Other, PersistRequest> ||
+                      std::is_same_v<Other, SnapshotRequest> ||
+                      std::is_same_v<Other, BundleRequest>);
+        LOCKWIND_ASSERT(false);
+    }
     Status create_world(const MatchConfig& config);
     Status corrupt_if_due(Tick tick);
     Result<std::vector<std::byte>> desync_report(const HashMismatch& desync);

@@ -112,19 +112,7 @@ void MatchServer::poll() {
             if (failed_ && !failure_told_) {
                 break; // nobody may hear of a tick that was not stepped or is not in the log
             }
-            std::visit(
-                [this](const auto& wanted) {
-                    using Wanted = std::decay_t<decltype(wanted)>;
-                    if constexpr (requires { this->execute(wanted); }) {
-                        execute(wanted);
-                    } else {
-                        static_assert(std::is_same_v<Wanted, CreateRequest> ||
-                                      std::is_same_v<Wanted, RestoreRequest> ||
-                                      std::is_same_v<Wanted, DesyncReportRequest>);
-                        LOCKWIND_ASSERT(!"a client's request");
-                    }
-                },
-                request);
+            std::visit([this](const auto& wanted) { execute(wanted); }, request);
         }
         failure_told_ = failed_;
         session_.update(transport_.clock_us());

@@ -15,6 +15,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace lockwind {
@@ -87,6 +88,14 @@ private:
     void execute(const SnapshotRequest& request);
     void execute(const BundleRequest& request);
     void execute(const NotifyRequest& request);
+    /// A client's request, which this session never makes.
+    template <class Other>
+    void execute(const Other& /*request*/) {
+        static_assert(std::is_same_v<Other, CreateRequest> ||
+                      std::is_same_v<Other, RestoreRequest> ||
+                      std::is_same_v<Other, DesyncReportRequest>);
+        LOCKWIND_ASSERT(false);
+    }
     void record_events(Tick tick);
     Status record_session_event(const SessionEvent& event);
     Result<DesyncOutcome> trace_desync(const BundleRequest& request);

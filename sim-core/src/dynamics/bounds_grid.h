@@ -137,26 +137,26 @@ void BoundsGrid::query_level(const Level& level, const Bounds& query, Visit&& vi
         visit_items(start[0], start[level.bucket_mask + 1], query, visit);
         return;
     }
+    const auto visit_on_line = [&](std::uint32_t line, std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t index = begin; index < end; ++index) {
+            const Item& item = items_[index];
+            if (item.line == line && overlaps(item.bounds, query)) {
+                visit(item.row);
+            }
+        }
+    };
     for (std::int64_t z = first[2]; z <= last[2]; ++z) {
         for (std::int64_t y = first[1]; y <= last[1]; ++y) {
             const auto cell_y = static_cast<std::int32_t>(y);
             const auto cell_z = static_cast<std::int32_t>(z);
             const std::uint32_t line = line_of(cell_y, cell_z);
-            const auto visit_on_line = [&](std::uint32_t begin, std::uint32_t end) {
-                for (std::uint32_t index = begin; index < end; ++index) {
-                    const Item& item = items_[index];
-                    if (item.line == line && overlaps(item.bounds, query)) {
-                        visit(item.row);
-                    }
-                }
-            };
             const std::uint32_t bucket =
                 bucket_of(static_cast<std::int32_t>(first[0]), cell_y, cell_z) & level.bucket_mask;
             const std::uint32_t end = bucket + static_cast<std::uint32_t>(run);
             const std::uint32_t buckets = level.bucket_mask + 1;
-            visit_on_line(start[bucket], start[std::min(end, buckets)]);
+            visit_on_line(line, start[bucket], start[std::min(end, buckets)]);
             if (end > buckets) {
-                visit_on_line(start[0], start[end - buckets]);
+                visit_on_line(line, start[0], start[end - buckets]);
             }
         }
     }
