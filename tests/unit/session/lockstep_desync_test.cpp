@@ -96,6 +96,19 @@ TEST(LockstepDesync, TwoSlotsAreBothAsked) {
     EXPECT_EQ(match.server.session.end_message(), "desync at tick 100 in 2 of 3 slots");
 }
 
+TEST(LockstepDesync, AQueryThatIsRepeatedIsAnsweredOnce) {
+    Conditions conditions;
+    conditions.latency_us = 400'000; // the query is repeated after 500 ms
+    VirtualMatch match(VirtualMatch::server_settings(1, 300), conditions);
+    match.add_clients(1);
+    match.clients[0]->corrupt_at = 100;
+    ASSERT_TRUE(match.run_to_end());
+    EXPECT_EQ(match.clients[0]->report_requests.size(), 1U);
+    EXPECT_EQ(match.clients[0]->session.counters().desyncs, 1U);
+    ASSERT_EQ(match.server.bundles.size(), 1U);
+    EXPECT_EQ(match.server.bundles[0].report.size(), 1000U);
+}
+
 TEST(LockstepDesync, AClientThatDiesBeforeItsReportEndsTheInquiry) {
     VirtualMatch match(VirtualMatch::server_settings(2, 300));
     match.add_clients(2);

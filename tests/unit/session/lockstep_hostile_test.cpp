@@ -256,6 +256,14 @@ TEST(LockstepHostileServer, ClientsIgnoreWhatNoServerSays) {
     EXPECT_EQ(client.counters().violations.of(Violation::unexpected_message), 3U);
     tell(0, Welcome{});
     tell(0, Refuse{});
+    Chunk chunk; // no snapshot was promised
+    chunk.transfer = 1;
+    chunk.count = 1;
+    tell(0, chunk);
+    for (const Request& request : client.take_requests()) {
+        const auto* send = std::get_if<SendRequest>(&request);
+        EXPECT_TRUE(send == nullptr || !std::holds_alternative<ChunkAck>(send->message));
+    }
     tell(0, End{EndReason::dropped, 0, 99, "of another connection"});
     ASSERT_TRUE(match.run_to_end());
     EXPECT_EQ(match.server.session.end_reason(), EndReason::complete);

@@ -17,6 +17,7 @@ TEST(LockstepMatch, GivesEveryoneTheChainOfAStraightRun) {
         EXPECT_EQ(client->session.state_hash(), match.server.session.state_hash());
         EXPECT_EQ(client->session.counters().ticks_confirmed, 300U);
         EXPECT_EQ(client->session.counters().stalls, 0U);
+        EXPECT_EQ(client->inputs_given.rbegin()->first, 300U); // none for ticks that never come
     }
     const LockstepServerCounters& counters = match.server.session.counters();
     EXPECT_EQ(counters.joins, 3U);

@@ -72,6 +72,66 @@ TEST(LockstepReconnect, AClientThatTheServerDroppedIsToldAndComesBack) {
     match.expect_one_chain();
 }
 
+TEST(LockstepReconnect, ADroppedClientThatDidNotHearSoIsToldAgain) {
+    LockstepServerSettings settings = VirtualMatch::server_settings(2, 400);
+    settings.stall_policy = StallPolicy::drop;
+    VirtualMatch match(settings);
+    match.add_clients(2);
+    ASSERT_TRUE(match.run_to_tick(60));
+    match.clients[1]->gives_inputs = false;
+    match.network.deaf.insert(match.clients[1]->peer);
+    ASSERT_TRUE(match.run([&] { return match.server.count(SessionEventKind::dropped) == 1; }));
+    match.run_for(50'000);
+    match.network.deaf.clear(); // it hears the others' confirmations, so it misses nothing
+    match.clients[1]->gives_inputs = true;
+    ASSERT_TRUE(match.run_to_end());
+    EXPECT_EQ(match.server.session.counters().reconnects, 1U);
+    EXPECT_EQ(match.server.log.at(400)[1].status, InputStatus::confirmed);
+    match.expect_one_chain();
+}
+
+TEST(LockstepReconnect, AClientThatHearsNothingConnectsAnewThoughItIsHeard) {
+    VirtualMatch match(VirtualMatch::server_settings(2, 400));
+    match.add_clients(2);
+    ASSERT_TRUE(match.run_to_tick(60));
+    match.network.deaf.insert(match.clients[1]->peer);
+    match.run_for(2'500'000);
+    EXPECT_EQ(match.clients[1]->count(SessionEventKind::dropped), 1U);
+    EXPECT_EQ(match.server.count(SessionEventKind::interrupted), 0U);
+    match.network.deaf.clear();
+    match.run_for(1'000'000); // the server need not miss it first
+    EXPECT_EQ(match.clients[1]->session.phase(), ClientPhase::playing);
+    ASSERT_TRUE(match.run_to_end());
+    EXPECT_EQ(match.server.session.end_reason(), EndReason::complete);
+    EXPECT_EQ(match.server.session.counters().reconnects, 1U);
+    EXPECT_EQ(match.server.log.at(400)[1].status, InputStatus::confirmed);
+    match.expect_one_chain();
+}
+
+TEST(LockstepReconnect, NobodyIsWaitedForWhoseHashesAreFarBehind) {
+    LockstepServerSettings settings = VirtualMatch::server_settings(2, 500);
+    settings.ready_timeout_ms = 3000;
+    settings.hash_lag_ticks_max = 60;
+    VirtualMatch match(settings);
+    match.add_clients(2);
+    ASSERT_TRUE(match.run_to_tick(100));
+    match.clients[1]->alive = false;
+    ASSERT_TRUE(match.run([&] { return match.server.count(SessionEventKind::dropped) == 1; }));
+    match.server.simulation.pad_snapshots(10 * kChunkSizeBytesMax - 100);
+    LockstepClientSettings secretive = VirtualMatch::client_settings(101);
+    secretive.reconnect = false;
+    ClientDriver& back = match.add_client(secretive);
+    back.sends_hashes = false;
+    match.network.extra_latency_us[back.peer] = 100'000;
+    ASSERT_TRUE(match.run_to_end());
+    EXPECT_FALSE(back.inputs_given.empty()); // it had caught up
+    EXPECT_EQ(match.server.session.counters().reconnects, 0U);
+    EXPECT_EQ(match.server.session.counters().drops, 2U);
+    EXPECT_EQ(back.session.end_reason(), EndReason::dropped);
+    EXPECT_EQ(back.session.end_message(), "not ready within 3000 ms");
+    match.expect_one_chain();
+}
+
 TEST(LockstepReconnect, SurvivesManyDropsUnderLoss) {
     Conditions conditions;
     conditions.latency_us = 20'000;

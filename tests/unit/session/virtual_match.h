@@ -72,7 +72,7 @@ public:
             }
             return;
         }
-        if (cut.contains(from) || cut.contains(to)) {
+        if (cut.contains(from) || cut.contains(to) || deaf.contains(to)) {
             ++lost;
             return;
         }
@@ -120,6 +120,7 @@ public:
     Conditions conditions;
     std::vector<PeerId> peers;                        // all clients
     std::map<PeerId, std::uint64_t> extra_latency_us; // of a client, one way
+    std::set<PeerId> deaf;                            // peers whom nothing reaches
     std::set<PeerId> cut; // peers whom nothing reaches, and who reach nobody
     std::uint64_t lost = 0;
     std::uint64_t duplicated = 0;
