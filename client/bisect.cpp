@@ -48,6 +48,7 @@ private:
 int run_program(const std::vector<std::string>& arguments) {
     std::vector<char*> pointers;
     pointers.reserve(arguments.size() + 1);
+    pointers.reserve(arguments.size() + 1);
     for (const std::string& argument : arguments) {
         pointers.push_back(const_cast<char*>(argument.c_str()));
     }
