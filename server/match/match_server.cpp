@@ -173,10 +173,12 @@ void MatchServer::execute(const AdvanceRequest& request) {
 }
 
 void MatchServer::execute(const SnapshotRequest& request) {
-    std::vector<std::byte> bytes;
-    simulation_->save(bytes);
-    session_.snapshot_saved(
-        request.slot, request.tick, simulation_->state_hash(), std::move(bytes));
+    const std::uint64_t hash = simulation_->state_hash();
+    // What a slot comes back to is the state it agrees on, whether or not its hash was due.
+    if (history_.find(request.tick) == nullptr) {
+        history_.save(*simulation_, hash);
+    }
+    session_.snapshot_saved(request.slot, request.tick, hash, history_.find(request.tick)->bytes);
 }
 
 void MatchServer::execute(const BundleRequest& request) {

@@ -135,6 +135,27 @@ DiffResult desync_of(SimulatedMatch& match) {
     return diff_bundle(read_bundle(outcome.bundle).value());
 }
 
+TEST(Match, ADesyncRightAfterAReconnectBetweenDueHashesIsTraced) {
+    TemporaryFolder folder;
+    SimulatedMatch match({.ticks = 600, .hash_interval_ticks = 30}, folder.file("match.log"));
+    match.add_fighters(2);
+    const LockstepServer& server = match.server().session();
+    ASSERT_TRUE(match.run_until([&] { return server.confirmed_tick() >= 100; }));
+    match.kill_bot(1);
+    ASSERT_TRUE(match.run_until([&] { return server.counters().drops == 1; }));
+    BotSettings again;
+    again.token = 2;
+    again.corrupt_phase = "solve";
+    match.add_bot(again);
+    const DiffResult diff = desync_of(match);
+    const DesyncOutcome& outcome = match.server().desyncs().front();
+    EXPECT_EQ(server.counters().reconnects, 1U);
+    EXPECT_NE(outcome.desync.agreed_tick % 30, 0U);
+    EXPECT_EQ(outcome.verdict, "nondeterminism");
+    EXPECT_EQ(diff.first_tick, outcome.desync.agreed_tick + 1);
+    EXPECT_EQ(diff.phase, "solve");
+}
+
 TEST(Match, CorruptedStateIsCaughtAtItsTickAndTracedToItsField) {
     TemporaryFolder folder;
     for (const std::uint32_t interval : {1U, 8U}) {
