@@ -67,6 +67,7 @@ struct ContactBlock {
     Lanes<std::int32_t> impulse_scale;
     Lanes<std::int32_t> bias_rate;
     Lanes<std::int32_t> friction;
+    Lanes<std::int32_t> impulse_max; // of a point, Q11.20 m/s: all together stay in the format
     Lanes<std::int32_t> coupling[6]; // K_ij / K0 of points 10 20 21 30 31 32
     Point point[kBlockPoints];
 

@@ -186,6 +186,7 @@ void ContactSolver::read_pair(const DynamicsTables& tables,
     block.mass_scale[lane] = softness.mass_scale;
     block.impulse_scale[lane] = softness.impulse_scale;
     block.bias_rate[lane] = softness.bias_rate;
+    block.impulse_max[lane] = kImpulseMax / static_cast<std::int32_t>(block.point_count[lane]);
     for (std::uint32_t point = 0; point < block.point_count_max; ++point) {
         const bool exists = point < block.point_count[lane];
         block.point[point].impulse[lane] = exists ? manifold.normal_impulse[point] : 0;
@@ -219,6 +220,7 @@ void ContactSolver::fill_padding(ContactBlock& block, PairTerms& terms) const {
         block.mass_scale[lane] = 0;
         block.impulse_scale[lane] = 0;
         block.bias_rate[lane] = 0;
+        block.impulse_max[lane] = 0;
         for (ContactBlock::Point& point : block.point) {
             point.impulse[lane] = 0;
         }

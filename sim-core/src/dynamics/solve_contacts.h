@@ -11,6 +11,13 @@ namespace lockwind {
 /// Push-out speed of overlapping bodies is at most 3 m/s.
 inline constexpr std::int32_t kPushOutSpeedMax = 3 * kVelocityOne;
 
+/// A contact's normal impulse in a substep / reduced mass is at most 960 m/s: what a closing speed
+/// of that takes, and what bears 24,000 times the mass of the lighter partner at 240 substeps a
+/// second.
+inline constexpr std::int32_t kImpulseMax = 960 * kVelocityOne;
+/// Of that, 480 m/s count for friction, so that a coefficient of 4 stays in the format.
+inline constexpr std::int32_t kFrictionLoadMax = 480 * kVelocityOne;
+
 /// The passes over one block's lanes from `first`, for contacts of kPoints points; in wider lanes,
 /// contacts that have fewer bear null rows.
 template <class L, std::uint32_t kPoints>
@@ -86,14 +93,14 @@ public:
             applied[point] = accumulate(point, old, lost);
             const Vector now = L::add(old, applied[point]);
             load = L::add(load, now);
-            twist_load = L::add(twist_load, scale(now, lane(p.lever)));
+            twist_load = L::add(twist_load, loaded(scale(now, lane(p.lever))));
         }
         apply_normal(applied);
         const Vector friction = lane(block_.friction);
         if constexpr (kPoints > 1) {
-            relax_twist(scale(twist_load, friction));
+            relax_twist(scale(loaded(twist_load), friction));
         }
-        relax_friction(scale(load, friction));
+        relax_friction(scale(loaded(load), friction));
         write_velocities();
     }
 
@@ -131,6 +138,7 @@ private:
     static Vector scale(Vector velocity, Vector coefficient) {
         return L::template multiply<kCoefficientFraction>(velocity, coefficient);
     }
+    static Vector loaded(Vector load) { return L::minimum(load, L::set(kFrictionLoadMax)); }
     static Wide start() { return L::template start<kCoefficientFraction>(); }
     static Vector finish(Wide sum) { return L::template round<kCoefficientFraction>(sum); }
 
@@ -220,7 +228,7 @@ private:
         return L::add(speed, finish(sum));
     }
     [[gnu::always_inline]] Vector accumulate(std::uint32_t point, Vector old, Vector lost) {
-        const Vector now = L::maximum(L::subtract(old, lost), L::set(0));
+        const Vector now = L::clamp(L::subtract(old, lost), L::set(0), lane(block_.impulse_max));
         L::store(block_.point[point].impulse + first_, now);
         return L::subtract(now, old);
     }

@@ -441,5 +441,31 @@ TEST(MassRatio, HeavyBoxStandsOnALightOne) {
     }
 }
 
+/// Far beyond what can be borne: the light box is crushed, but no impulse leaves its format.
+TEST(MassRatio, MillionfoldIsCrushedWithinTheFormats) {
+    DynamicsBench bench({}, 8);
+    bench.add(ground());
+    BodyDefinition light = cube(0.5, vec(0, 0.5, 0));
+    light.mass = real(0.001);
+    light.friction = 4;
+    bench.add(light);
+    BodyDefinition heavy = cube(0.5, vec(0, 1.5, 0));
+    heavy.mass = 1000000;
+    heavy.friction = 4;
+    heavy.linear_velocity = vec(1, -20, 0);
+    bench.add(heavy);
+    for (int tick = 0; tick < 600; ++tick) {
+        bench.step();
+        for (const Manifold& manifold : bench.tables().manifolds.rows()) {
+            for (const std::int32_t impulse : manifold.normal_impulse) {
+                ASSERT_GE(impulse, 0);
+                ASSERT_LE(impulse, 960 << 20);
+            }
+        }
+    }
+    EXPECT_GT(bench.position(2, 1), 0.4);
+    EXPECT_LT(bench.position(2, 1), 2);
+}
+
 } // namespace
 } // namespace lockwind
