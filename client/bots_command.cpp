@@ -182,7 +182,8 @@ int run_bots(const BotsOptions& options) {
     const Status seated =
         take_seats(options, settings.value(), conditions, participant.value(), seats);
     if (!seated) {
-        return fail(kExitUsage, seated.error().message);
+        return fail(options.behaviour.starts_with("log:") ? kExitFile : kExitUsage,
+                    seated.error().message);
     }
     catch_stop_signals();
     play(seats, *participant.value());

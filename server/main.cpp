@@ -82,12 +82,6 @@ int exit_code_of(const MatchServer& match) {
 }
 
 int run(ServerOptions options) {
-    if (options.log_path.empty()) {
-        options.log_path = default_log_path(options.config);
-    }
-    if (const std::optional<int> trouble = log_path_trouble(options.log_path)) {
-        return *trouble;
-    }
     Result<std::string> scene = load_scene_text(options.config.scene_name);
     if (!scene) {
         return fail(kExitFile, scene.error().message);
@@ -108,6 +102,12 @@ int run(ServerOptions options) {
         DdsTransport::open(participant.value(), options.config.match, kServerPeer);
     if (!transport) {
         return fail(kExitUsage, transport.error().message);
+    }
+    if (options.log_path.empty()) {
+        options.log_path = default_log_path(options.config);
+    }
+    if (const std::optional<int> trouble = log_path_trouble(options.log_path)) {
+        return *trouble;
     }
     MatchSettings settings;
     settings.config = options.config;

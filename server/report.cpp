@@ -13,6 +13,10 @@ nlohmann::ordered_json quantiles_json(const Histogram& histogram) {
             {"max", histogram.max()}};
 }
 
+nlohmann::ordered_json or_null(const std::string& text) {
+    return text.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(text);
+}
+
 std::string quantiles_text(const Histogram& histogram) {
     return fmt::format(
         "{}/{}/{}", histogram.quantile(500), histogram.quantile(990), histogram.max());
@@ -27,8 +31,9 @@ std::string report_json(const MatchServer& match) {
     for (const DesyncOutcome& outcome : match.desyncs()) {
         desyncs.push_back({{"slot", outcome.desync.slot},
                            {"tick", outcome.desync.bad_tick},
-                           {"bundle", outcome.bundle},
-                           {"verdict", outcome.verdict}});
+                           {"bundle", or_null(outcome.bundle)},
+                           {"verdict", or_null(outcome.verdict)},
+                           {"problem", or_null(outcome.problem)}});
     }
     const nlohmann::ordered_json report{
         {"ticks", session.confirmed_tick()},
@@ -54,7 +59,8 @@ std::string report_json(const MatchServer& match) {
         {"sim_version", sim_version()},
         {"ended", to_string(session.end_reason())},
     };
-    return report.dump();
+    // A path may hold any bytes; JSON holds UTF-8.
+    return report.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 std::string report_text(const MatchServer& match) {

@@ -2,6 +2,7 @@
 
 #include "log/log_reader.h"
 
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -37,6 +38,10 @@ Result<std::unique_ptr<Behaviour>> make_log_behaviour(const std::string& path) {
         if (auto* tick = std::get_if<TickRecord>(&*record)) {
             ticks.push_back(std::move(*tick));
         }
+    }
+    if (log.value().ended() == LogEnd::damaged) {
+        return Error{path + ": damaged after tick " + std::to_string(ticks.size()) + ": " +
+                     log.value().damage()};
     }
     return std::unique_ptr<Behaviour>(std::make_unique<LogBehaviour>(std::move(ticks)));
 }

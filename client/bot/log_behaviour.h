@@ -7,7 +7,7 @@
 namespace lockwind {
 
 /// Plays what the player of the same slot played in the log's match; idle behind the log's end. An
-/// Error where the file is missing or no log.
+/// Error where the file is missing, no log or damaged.
 Result<std::unique_ptr<Behaviour>> make_log_behaviour(const std::string& path);
 
 } // namespace lockwind

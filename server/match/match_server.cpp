@@ -4,6 +4,7 @@
 #include "forensics/bundle.h"
 #include "scene/scene.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 #include <variant>
@@ -148,9 +149,11 @@ void MatchServer::execute(const SendRequest& request) {
 
 void MatchServer::execute(const PersistRequest& request) {
     require_logged(log_->write_tick(request.tick, request.inputs, hash_));
-    if (hash_ && LogWriter::keyframe_due(request.tick)) {
-        require_logged(
-            log_->write_keyframe(request.tick, *hash_, history_.find(request.tick)->bytes));
+    if (!failed_ && LogWriter::keyframe_due(request.tick)) {
+        std::vector<std::byte> state;
+        simulation_->save(state);
+        const std::uint64_t hash = hash_ ? *hash_ : simulation_->state_hash();
+        require_logged(log_->write_keyframe(request.tick, hash, state));
     }
     record_events(request.tick);
 }
@@ -224,6 +227,15 @@ Status MatchServer::record_session_event(const SessionEvent& event) {
         return log_->write_leave({event.tick, event.slot, LeaveReason::left});
     case SessionEventKind::dropped:
         return log_->write_leave({event.tick, event.slot, LeaveReason::dropped});
+    case SessionEventKind::desync_detected: {
+        const std::span<const HashMismatch> desyncs = session_.desyncs();
+        const auto desync = std::find_if(desyncs.begin(), desyncs.end(), [&](const auto& one) {
+            return one.slot == event.slot;
+        });
+        LOCKWIND_ASSERT(desync != desyncs.end());
+        return log_->write_desync(
+            {desync->bad_tick, desync->slot, desync->server_hash, desync->client_hash});
+    }
     case SessionEventKind::paused:
         paused_at_us_ = transport_.clock_us();
         return Success{};

@@ -126,6 +126,16 @@ TEST(Match, AKilledBotComesBackIntoItsSlotAndReachesTheSameState) {
     EXPECT_FALSE(verify(folder.file("match.log")).first_bad_tick.has_value());
 }
 
+std::size_t desyncs_logged(const std::string& path) {
+    LogReader log = LogReader::open(path).value();
+    std::size_t count = 0;
+    while (const std::optional<LogRecord> record = log.next()) {
+        count += std::holds_alternative<DesyncRecord>(*record) ? 1U : 0U;
+    }
+    EXPECT_EQ(log.ended(), LogEnd::summary);
+    return count;
+}
+
 DiffResult desync_of(SimulatedMatch& match) {
     EXPECT_TRUE(match.run());
     EXPECT_EQ(match.server().session().end_reason(), EndReason::desync);
@@ -170,6 +180,7 @@ TEST(Match, CorruptedStateIsCaughtAtItsTickAndTracedToItsField) {
         EXPECT_EQ(match.server().desyncs().front().desync.bad_tick, 104U);
         EXPECT_EQ(match.server().desyncs().front().verdict, "corrupted_state");
         EXPECT_EQ(diff.first_tick, 104U);
+        EXPECT_EQ(desyncs_logged(folder.file(std::to_string(interval) + ".log")), 1U);
         EXPECT_EQ(diff.phase, "outside_step");
         EXPECT_EQ(diff.section, "body");
         EXPECT_EQ(diff.fields.at(0).field, "position.y");
