@@ -61,6 +61,13 @@ private:
     Vector of_manifold(Source&& source) const {
         return L::gather(first_, [&](int lane) { return source(*terms_.manifold[lane]); });
     }
+    /// From centre A to B; 0 in the lanes that do not have this point, so that all its arms are 0.
+    Vector delta_when_made(std::uint32_t point, int axis) const {
+        return L::gather(first_, [&](int lane) {
+            const bool exists = L::kWidth == 1 || point < block_.point_count[lane];
+            return exists ? terms_.manifold[lane]->centre_delta[axis] : 0;
+        });
+    }
     /// `value`, or 0 in the lanes that do not have this point.
     Vector of_point(std::uint32_t point, Vector value) const {
         if constexpr (L::kWidth == 1) {
@@ -217,9 +224,7 @@ void BlockPreparation<L>::make_separation(std::uint32_t point,
         local_a[axis] = of_manifold([=](const Manifold& m) { return m.local_a[index]; });
         local_b[axis] = of_manifold([=](const Manifold& m) { return m.local_b[index]; });
         arm_a_[point][axis] = of_manifold([=](const Manifold& m) { return m.anchor_a[index]; });
-        arm_b_[point][axis] =
-            L::subtract(arm_a_[point][axis],
-                        of_manifold([=](const Manifold& m) { return m.centre_delta[axis]; }));
+        arm_b_[point][axis] = L::subtract(arm_a_[point][axis], delta_when_made(point, axis));
     }
     Vector apart[3];
     LOCKWIND_UNROLL
