@@ -23,11 +23,11 @@ inline constexpr std::int32_t kSpeculativeMargin = 83886;
 inline constexpr std::int32_t kDirectionMin = 256;
 
 constexpr std::int32_t magnitude(std::int32_t value) {
-    return value < 0 ? -value : value;
+    return value < 0 ? raw_negate(value) : value;
 }
 
 constexpr std::int64_t magnitude(std::int64_t value) {
-    return value < 0 ? -value : value;
+    return value < 0 ? raw_negate(value) : value;
 }
 
 template <class T>
