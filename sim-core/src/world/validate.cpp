@@ -2,6 +2,7 @@
 
 #include "dynamics/bounds_grid.h"
 #include "dynamics/make_body.h"
+#include "geometry/fixed_geometry.h"
 #include "geometry/manifold.h"
 #include "systems/spawn.h"
 
@@ -191,48 +192,99 @@ const char* bad_pair_field(const DynamicsTables& tables, std::uint32_t index) {
     return all_zero(pair.zero) ? nullptr : "zero";
 }
 
-/// Largest coordinate of a contact point from either centre, Q9.22 m. The point lies midway
-/// between the two surfaces: within both bodies and 1 m, or as deep in a plane as a body may be.
-std::int64_t reach(const DynamicsTables& tables, const Pair& pair) {
-    constexpr std::int64_t kApart = std::int64_t{1} << 22U;
-    constexpr std::int64_t kPlaneDepth = std::int64_t{128} << 22U;
-    const std::int64_t a = tables.properties[pair.row_a].bounding_radius;
-    const std::int64_t b = tables.properties[pair.row_b].bounding_radius;
-    return a + b + (a == 0 || b == 0 ? kPlaneDepth : kApart);
+/// Longest arm from a body's centre to a contact point, Q9.22 m: what collide() keeps to, 1.25
+/// bounding radii and half the speculative margin, and 1 mm for roundings. On a plane it is as long
+/// as the partner is deep in it.
+std::int64_t arm_max(const DynamicsTables& tables, BodyRow row) {
+    constexpr std::int64_t kSlack = (kSpeculativeMargin >> 1) + ((std::int64_t{1} << 22U) / 1000);
+    constexpr std::int64_t kPlaneDepth = std::int64_t{500} << 22U;
+    const std::int64_t radius = tables.properties[row].bounding_radius;
+    return radius == 0 ? kPlaneDepth : radius + (radius >> 2U) + kSlack;
+}
+
+bool is_within(const std::int64_t (&vector)[3], std::int64_t length) {
+    std::int64_t square = 0;
+    for (const std::int64_t component : vector) {
+        if (component > length || component < -length) {
+            return false;
+        }
+        square += component * component;
+    }
+    return square <= length * length;
+}
+
+const char* bad_point_field(const Manifold& manifold,
+                            std::uint32_t point,
+                            std::int64_t longest_a,
+                            std::int64_t longest_b) {
+    const std::int32_t* local_a = manifold.local_a + 3 * point;
+    const std::int32_t* local_b = manifold.local_b + 3 * point;
+    const std::int32_t* anchor_a = manifold.anchor_a + 3 * point;
+    const std::int32_t* delta = manifold.centre_delta;
+    if (!is_within({local_a[0], local_a[1], local_a[2]}, longest_a)) {
+        return "local_a";
+    }
+    if (!is_within({local_b[0], local_b[1], local_b[2]}, longest_b)) {
+        return "local_b";
+    }
+    if (!is_within({anchor_a[0], anchor_a[1], anchor_a[2]}, longest_a)) {
+        return "anchor_a";
+    }
+    if (!is_within({std::int64_t{anchor_a[0]} - delta[0],
+                    std::int64_t{anchor_a[1]} - delta[1],
+                    std::int64_t{anchor_a[2]} - delta[2]},
+                   longest_b)) {
+        return "centre_delta";
+    }
+    return manifold.normal_impulse[point] < 0 ? "normal_impulse" : nullptr;
+}
+
+bool is_unused(const Manifold& manifold, std::uint32_t point) {
+    const auto is_zero = [](std::int32_t value) { return value == 0; };
+    return manifold.normal_impulse[point] == 0 && manifold.separation[point] == 0 &&
+           manifold.feature[point] == 0 &&
+           std::all_of(manifold.anchor_a + 3 * point, manifold.anchor_a + 3 * point + 3, is_zero) &&
+           std::all_of(manifold.local_a + 3 * point, manifold.local_a + 3 * point + 3, is_zero) &&
+           std::all_of(manifold.local_b + 3 * point, manifold.local_b + 3 * point + 3, is_zero);
 }
 
 const char* bad_manifold_field(const DynamicsTables& tables, const Pair& pair) {
-    constexpr std::int64_t kImpulseMax = std::int64_t{2000} << 20U;
+    // The solver caps a contact's normal impulses together, and friction at 4 x 480 m/s.
+    constexpr std::int64_t kNormalImpulseMax = std::int64_t{960} << 20U;
+    constexpr std::int64_t kFrictionImpulseMax = std::int64_t{1920} << 20U;
     const Manifold& manifold = tables.manifolds[pair.manifold];
     if (manifold.row_a != pair.row_a || manifold.row_b != pair.row_b) {
         return "row_a";
     }
-    if (manifold.point_count != pair.point_count || manifold.point_count > 4) {
+    if (manifold.point_count != pair.point_count || manifold.point_count > kManifoldPointsMax) {
         return "point_count";
     }
     if (!is_unit(manifold.normal) || !is_unit(manifold.tangent)) {
         return "normal";
     }
-    if (!all_within(manifold.friction_impulse, kImpulseMax) ||
-        !all_within({&manifold.twist_impulse, 1}, kImpulseMax) ||
-        !all_within(manifold.normal_impulse, kImpulseMax)) {
-        return "normal_impulse";
+    if (!all_within(manifold.friction_impulse, kFrictionImpulseMax) ||
+        !all_within({&manifold.twist_impulse, 1}, kFrictionImpulseMax)) {
+        return "friction_impulse";
     }
-    const std::int64_t farthest = reach(tables, pair);
-    if (!all_within(manifold.anchor_a, farthest)) {
-        return "anchor_a";
+    const std::int64_t longest_a = arm_max(tables, pair.row_a);
+    const std::int64_t longest_b = arm_max(tables, pair.row_b);
+    if (!all_within(manifold.separation, longest_a + longest_b)) {
+        return "separation";
     }
-    if (!all_within(manifold.local_a, farthest) || !all_within(manifold.local_b, farthest)) {
-        return "local_a or local_b";
-    }
-    if (!all_within(manifold.centre_delta, 2 * farthest) ||
-        !all_within(manifold.separation, 2 * farthest)) {
-        return "centre_delta or separation";
-    }
+    std::int64_t normal_impulse = 0;
     for (std::uint32_t point = 0; point < kManifoldPointsMax; ++point) {
-        if (manifold.normal_impulse[point] < 0) {
-            return "normal_impulse";
+        normal_impulse += manifold.normal_impulse[point];
+        if (point >= manifold.point_count) {
+            if (!is_unused(manifold, point)) {
+                return "a point past point_count";
+            }
+        } else if (const char* field = bad_point_field(manifold, point, longest_a, longest_b);
+                   field != nullptr) {
+            return field;
         }
+    }
+    if (normal_impulse > kNormalImpulseMax) {
+        return "normal_impulse";
     }
     return all_zero(manifold.zero) ? nullptr : "zero";
 }

@@ -14,9 +14,10 @@
 namespace lockwind {
 
 // Whether rows are such as a step leaves them: a state that passes can be stepped without leaving a
-// table, an overflow or an endless loop. An Error names section, row and field. Constants of the
-// match are compared, what a body's shape implies is made anew and compared; the rest is held to
-// ranges.
+// table or a loop without end. An Error names section, row and field. Constants of the match are
+// compared, what a body's shape implies is made anew and compared; the rest is held to ranges.
+// Forged velocities and impulses that pass one by one may together leave the solver's formats: then
+// they wrap, as all arithmetic does, and a CHECKED build traps.
 
 Status check_globals(const Table<Globals>& globals);
 Status check_players(const Table<Player>& players, std::span<const BodyId> pods);
