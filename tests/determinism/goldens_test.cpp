@@ -21,12 +21,13 @@ struct GoldenRun {
     std::vector<Tick> checkpoints;
 };
 
+// NOLINTNEXTLINE(readability-identifier-naming): the name GoogleTest looks for
 void PrintTo(const GoldenRun& run, std::ostream* out) {
     *out << run.scene;
 }
 
 const std::vector<GoldenRun>& golden_runs() {
-    static const std::vector<GoldenRun> kRuns{
+    static const std::vector<GoldenRun> runs{
         {"empty", 0, {0, 10}},
         {"swarm_small", 8, {0, 60, 600}},
         {"arena", 4, {0, 60, 300}},
@@ -35,7 +36,7 @@ const std::vector<GoldenRun>& golden_runs() {
         {"spheres_1000", 0, {0, 30, 60}},
         {"heap_1000", 0, {0, 30, 60}},
     };
-    return kRuns;
+    return runs;
 }
 
 std::string goldens_path() {
@@ -84,6 +85,7 @@ std::vector<std::string> golden_lines(const GoldenRun& run) {
 }
 
 bool is_rewriting() {
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): the test program has one thread
     return std::getenv("LOCKWIND_REWRITE_GOLDENS") != nullptr;
 }
 

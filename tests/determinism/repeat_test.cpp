@@ -13,7 +13,7 @@ constexpr int kTicks = 240;
 
 /// Hashes of state(0) .. state(kTicks) of a straight run.
 const std::vector<std::uint64_t>& straight_chain() {
-    static const std::vector<std::uint64_t> kChain = [] {
+    static const std::vector<std::uint64_t> states = [] {
         const WorldPtr world = make_world(busy_scene(60, 4));
         std::vector<std::uint64_t> chain{world->state_hash()};
         for (int tick = 0; tick < kTicks; ++tick) {
@@ -22,7 +22,7 @@ const std::vector<std::uint64_t>& straight_chain() {
         }
         return chain;
     }();
-    return kChain;
+    return states;
 }
 
 TEST(Determinism, TheStraightRunIsNotVacuous) {

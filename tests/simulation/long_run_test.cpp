@@ -13,6 +13,7 @@ struct Run {
     int ticks;
 };
 
+// NOLINTNEXTLINE(readability-identifier-naming): the name GoogleTest looks for
 void PrintTo(const Run& run, std::ostream* out) {
     *out << run.scene;
 }

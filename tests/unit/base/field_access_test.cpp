@@ -7,10 +7,10 @@
 namespace lockwind::test {
 namespace {
 
-const FieldDescriptor& kId = kSampleFields[0];
-const FieldDescriptor& kPosition = kSampleFields[1];
-const FieldDescriptor& kSpeed = kSampleFields[2];
-const FieldDescriptor& kFlags = kSampleFields[3];
+constexpr const FieldDescriptor& kId = kSampleFields[0];
+constexpr const FieldDescriptor& kPosition = kSampleFields[1];
+constexpr const FieldDescriptor& kSpeed = kSampleFields[2];
+constexpr const FieldDescriptor& kFlags = kSampleFields[3];
 
 const std::byte* bytes_of(const Sample& sample) {
     return reinterpret_cast<const std::byte*>(&sample);
