@@ -57,9 +57,10 @@ PeerId draw_address(std::random_device& device) {
 Result<BotSettings> bot_settings(const BotsOptions& options) {
     BotSettings settings;
     settings.behaviour = options.behaviour;
+    settings.connect_timeout_ms = options.connect_timeout_s * 1000;
     settings.corrupt_phase = options.corrupt_phase;
-    if (!options.corrupt.empty()) {
-        const Result<Corruption> corruption = parse_corruption(options.corrupt);
+    if (options.corrupt) {
+        const Result<Corruption> corruption = parse_corruption(*options.corrupt);
         if (!corruption) {
             return corruption.error();
         }
@@ -140,7 +141,7 @@ std::vector<const Bot*> bots_of(const std::vector<Seat>& seats) {
     return bots;
 }
 
-int exit_code_of(const std::vector<const Bot*>& bots) {
+int exit_code_of(const std::vector<const Bot*>& bots, const std::string& place) {
     int code = kExitDone;
     for (const Bot* bot : bots) {
         const LockstepClient& session = bot->session();
@@ -149,7 +150,9 @@ int exit_code_of(const std::vector<const Bot*>& bots) {
         }
         if (session.end_reason() == EndReason::failed ||
             session.end_reason() == EndReason::dropped) {
-            code = fail(kExitNetwork, session.end_message());
+            code = fail(kExitNetwork,
+                        bot->found_server() ? session.end_message()
+                                            : "no server was found of " + place);
         }
     }
     return code;
@@ -163,10 +166,10 @@ int run_bots(const BotsOptions& options) {
         return fail(kExitUsage, settings.error().message);
     }
     std::optional<LinkConditions> conditions;
-    if (!options.net.empty()) {
-        const Result<LinkConditions> parsed = parse_link_conditions(options.net);
+    if (options.net) {
+        const Result<LinkConditions> parsed = parse_link_conditions(*options.net);
         if (!parsed) {
-            return fail(kExitUsage, parsed.error().message);
+            return fail(kExitUsage, "--net: " + parsed.error().message);
         }
         conditions = parsed.value();
     }
@@ -186,11 +189,14 @@ int run_bots(const BotsOptions& options) {
                     seated.error().message);
     }
     catch_stop_signals();
+    const std::string place =
+        fmt::format("match '{}' at {}, domain {}", options.match, options.server, options.domain);
+    say_info("looking for " + place);
     play(seats, *participant.value());
     const std::vector<const Bot*> bots = bots_of(seats);
     fmt::print("{}", options.json ? bots_json(bots) : bots_text(bots));
     std::fflush(stdout);
-    return exit_code_of(bots);
+    return exit_code_of(bots, place);
 }
 
 } // namespace lockwind

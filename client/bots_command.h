@@ -12,10 +12,11 @@ struct BotsOptions {
     std::string server = "127.0.0.1";
     std::uint32_t domain = 1;
     std::string match = "match";
+    std::uint32_t connect_timeout_s = 30;
     std::string behaviour = "fight";   // or log:FILE
     std::optional<std::uint64_t> seed; // none: drawn
-    std::string net;                   // link conditions; "" for none
-    std::string corrupt;
+    std::optional<std::string> net;    // link conditions
+    std::optional<std::string> corrupt;
     std::string corrupt_phase;
     bool json = false;
 };

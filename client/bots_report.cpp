@@ -9,15 +9,17 @@ namespace lockwind {
 
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 /// Of sessions that predict; a lock-step session never does.
 constexpr std::uint64_t kNone = 0;
 
-nlohmann::ordered_json bot_json(const Bot& bot) {
+Json bot_json(const Bot& bot) {
     const LockstepClient& session = bot.session();
     const LockstepClientCounters& counters = session.counters();
     const TransportStats stats = bot.transport().stats();
     return {
-        {"slot", session.slot()},
+        {"slot", session.slot() == kNoSlot ? Json(nullptr) : Json(session.slot())},
         {"ticks_confirmed", counters.ticks_confirmed},
         {"ticks_predicted", kNone},
         {"rollbacks", kNone},
@@ -42,11 +44,11 @@ nlohmann::ordered_json bot_json(const Bot& bot) {
 } // namespace
 
 std::string bots_json(const std::vector<const Bot*>& bots) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    Json list = Json::array();
     for (const Bot* bot : bots) {
         list.push_back(bot_json(*bot));
     }
-    return nlohmann::ordered_json{{"bots", std::move(list)}}.dump() + "\n";
+    return Json{{"bots", std::move(list)}}.dump() + "\n";
 }
 
 std::string bots_text(const std::vector<const Bot*>& bots) {
@@ -55,8 +57,8 @@ std::string bots_text(const std::vector<const Bot*>& bots) {
         const LockstepClient& session = bot->session();
         const LockstepClientCounters& counters = session.counters();
         text += fmt::format(
-            "slot {}: {} at tick {}, state {}, rtt {}/{} us p50/p99, {} stalls, {} desyncs{}{}\n",
-            session.slot(),
+            "{}: {} at tick {}, state {}, rtt {}/{} us p50/p99, {} stalls, {} desyncs{}{}\n",
+            session.slot() == kNoSlot ? "no slot" : fmt::format("slot {}", session.slot()),
             to_string(session.end_reason()),
             session.confirmed_tick(),
             hash_text(session.state_hash()),

@@ -5,9 +5,12 @@
 #include "log/published_file.h"
 #include "program/console.h"
 #include "program/exit_code.h"
+#include "program/output_path.h"
 
 #include <fmt/format.h>
+#include <string>
 #include <variant>
+#include <vector>
 
 namespace lockwind {
 namespace {
@@ -19,7 +22,7 @@ struct Failure {
 };
 struct Comparison {
     DiffResult diff;
-    std::string damage;
+    std::vector<std::string> trouble;
 };
 using Outcome = std::variant<Comparison, Failure>;
 
@@ -33,13 +36,13 @@ Outcome compare_logs(const DiffCommandOptions& options) {
     if (!a || !b) {
         return unreadable(a ? b.error() : a.error());
     }
-    Comparison comparison{diff_logs(a.value(), b.value()), ""};
+    Comparison comparison{diff_logs(a.value(), b.value()), {}};
     for (LogReader* log : {&a.value(), &b.value()}) {
         if (log->ended() == LogEnd::damaged) {
-            comparison.damage = fmt::format("{}: damaged {}; {} bytes before it are good",
-                                            log->path(),
-                                            log->damage(),
-                                            log->valid_bytes());
+            comparison.trouble.push_back(fmt::format("{}: damaged {}; {} bytes before it are good",
+                                                     log->path(),
+                                                     log->damage(),
+                                                     log->valid_bytes()));
         }
     }
     return comparison;
@@ -55,7 +58,7 @@ Outcome compare_traces(const DiffCommandOptions& options) {
     if (!diff) {
         return unreadable(diff.error());
     }
-    return Comparison{std::move(diff).value(), ""};
+    return Comparison{std::move(diff).value(), {}};
 }
 
 Outcome compare_snapshots(const DiffCommandOptions& options) {
@@ -68,7 +71,7 @@ Outcome compare_snapshots(const DiffCommandOptions& options) {
     if (!diff) {
         return unreadable(diff.error());
     }
-    return Comparison{std::move(diff).value(), ""};
+    return Comparison{std::move(diff).value(), {}};
 }
 
 Outcome open_bundle(const DiffCommandOptions& options) {
@@ -76,7 +79,7 @@ Outcome open_bundle(const DiffCommandOptions& options) {
     if (!bundle) {
         return unreadable(bundle.error());
     }
-    return Comparison{diff_bundle(bundle.value()), ""};
+    return Comparison{diff_bundle(bundle.value()), {}};
 }
 
 Outcome compare(const DiffCommandOptions& options) {
@@ -117,12 +120,15 @@ Outcome compare(const DiffCommandOptions& options) {
 } // namespace
 
 int run_diff(const DiffCommandOptions& options) {
+    if (const auto trouble = output_path_trouble("--junit", options.junit, Existing::replaced)) {
+        return *trouble;
+    }
     Outcome outcome = compare(options);
     if (const auto* failure = std::get_if<Failure>(&outcome)) {
         say_error(failure->message);
         return failure->exit_code;
     }
-    auto& [diff, damage] = std::get<Comparison>(outcome);
+    auto& [diff, trouble] = std::get<Comparison>(outcome);
     if (!options.b.empty()) {
         diff.name_a = "a";
         diff.name_b = "b";
@@ -131,18 +137,17 @@ int run_diff(const DiffCommandOptions& options) {
     if (!options.junit.empty()) {
         PublishedFile file(options.junit);
         file.write(diff_junit(diff, options.a + (options.b.empty() ? "" : " " + options.b)));
-        if (Status status = file.replace(); !status) {
-            say_error(status.error().message);
-            return kExitUsage;
+        if (const Status written = file.replace(); !written) {
+            trouble.push_back(written.error().message);
         }
     }
-    if (!damage.empty()) {
-        say_error(damage);
+    for (const std::string& problem : trouble) {
+        say_error(problem);
     }
     if (!diff.same) {
-        return kExitDiverged;
+        return kExitDiverged; // whatever else went wrong
     }
-    return damage.empty() ? kExitDone : kExitFile;
+    return trouble.empty() ? kExitDone : kExitFile;
 }
 
 } // namespace lockwind

@@ -3,13 +3,14 @@
 #include "info_command.h"
 #include "program/console.h"
 #include "program/exit_code.h"
+#include "program/flag_values.h"
 #include "replay_command.h"
 #include "scenes_command.h"
 #include "transport/dds/dds_participant.h"
 
 #include "lockwind/world_simulation.h"
 
-#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <fmt/format.h>
@@ -32,26 +33,37 @@ void add_bots(CLI::App& app, Commands& commands) {
     BotsOptions& options = commands.bots;
     CLI::App* command = app.add_subcommand("bots", "play a match with headless bots");
     command->add_option("--count", options.count, "bots in this process, each with its own world")
-        ->check(CLI::Range(1U, kPlayersMax))
+        ->check(whole_number(1, kPlayersMax))
         ->capture_default_str();
-    command->add_option("--server", options.server, "the server's address")->capture_default_str();
+    command->add_option("--server", options.server, "the server's address")
+        ->check(not_empty())
+        ->capture_default_str();
     command->add_option("--domain", options.domain, "DDS domain, as the server's")
-        ->check(CLI::Range(1U, kDdsDomainMax))
+        ->check(whole_number(1, kDdsDomainMax))
         ->capture_default_str();
-    command->add_option("--match", options.match, "name of the match")->capture_default_str();
+    command->add_option("--match", options.match, "name of the match")
+        ->check(not_empty())
+        ->capture_default_str();
+    command
+        ->add_option(
+            "--connect-timeout", options.connect_timeout_s, "seconds to look for the match")
+        ->check(whole_number(1, 86'400))
+        ->capture_default_str();
     command->add_option("--behaviour", options.behaviour, "fight, wander, idle or log:FILE")
         ->capture_default_str();
-    command->add_option(
-        "--seed", options.seed, "of the bots' whims and tokens; drawn if not given");
+    command->add_option("--seed", options.seed, "of the bots' whims and tokens; drawn if not given")
+        ->check(whole_number());
     command->add_option("--net",
                         options.net,
                         "worse links: latency=40ms,jitter=10ms,loss=2%,duplicate=1%,reorder=1%");
     command->add_option("--corrupt",
                         options.corrupt,
                         "test tool: slot=S,tick=T[,field=NAME] changes state after step T");
-    command->add_option("--corrupt-phase",
-                        options.corrupt_phase,
-                        "test tool: changes state after every run of this phase");
+    command
+        ->add_option("--corrupt-phase",
+                     options.corrupt_phase,
+                     "test tool: changes state after every run of this phase")
+        ->check(not_empty());
     command->add_flag("--json", options.json, "print one JSON object on stdout at the end");
     command->callback([&commands] { commands.run = [&] { return run_bots(commands.bots); }; });
 }
@@ -61,16 +73,21 @@ void add_replay(CLI::App& app, Commands& commands) {
     CLI::App* command = app.add_subcommand("replay", "step a log's inputs again");
     command->add_option("LOG", options.log, "the log")->required();
     command->add_flag("--verify", options.verify, "compare every hash; exit 1 at a difference");
-    command->add_option("--from", options.from, "first tick to step, from the keyframe before it");
-    command->add_option("--to", options.to, "last tick to step");
-    command->add_option("--trace", options.trace, "write the hash after every phase to this file");
+    command->add_option("--from", options.from, "first tick to step, from the keyframe before it")
+        ->check(whole_number());
+    command->add_option("--to", options.to, "last tick to step")->check(whole_number());
+    command->add_option("--trace", options.trace, "write the hash after every phase to this file")
+        ->check(not_empty());
     command->add_flag("--trace-states",
                       options.trace_states,
                       "with the states, so that a diff of traces names the field");
-    command->add_option("--snapshot", options.snapshot, "write the last state to this file");
-    command->add_option("--bisect",
-                        options.bisect,
-                        "another build's lockwind: trace both, print the first divergence");
+    command->add_option("--snapshot", options.snapshot, "write the last state to this file")
+        ->check(not_empty());
+    command
+        ->add_option("--bisect",
+                     options.bisect,
+                     "another build's lockwind: trace both, print the first divergence")
+        ->check(not_empty());
     command->add_flag("--json", options.json, "print one JSON object on stdout");
     command->callback([&commands] { commands.run = [&] { return run_replay(commands.replay); }; });
 }
@@ -80,8 +97,10 @@ void add_diff(CLI::App& app, Commands& commands) {
     CLI::App* command = app.add_subcommand(
         "diff", "the first divergence: of a bundle, or of two logs, traces or snapshots");
     command->add_option("A", options.a, "a bundle, log, trace or snapshot")->required();
-    command->add_option("B", options.b, "what to compare it with; not for a bundle");
-    command->add_option("--junit", options.junit, "write JUnit XML to this file, for CI");
+    command->add_option("B", options.b, "what to compare it with; not for a bundle")
+        ->check(not_empty());
+    command->add_option("--junit", options.junit, "write JUnit XML to this file, for CI")
+        ->check(not_empty());
     command->add_flag("--json", options.json, "print one JSON object on stdout");
     command->callback([&commands] { commands.run = [&] { return run_diff(commands.diff); }; });
 }
@@ -90,7 +109,8 @@ void add_info(CLI::App& app, Commands& commands) {
     InfoCommandOptions& options = commands.info;
     CLI::App* command = app.add_subcommand("info", "what a log, trace, bundle or snapshot holds");
     command->add_option("FILE", options.file, "any file that the tools wrote")->required();
-    command->add_option("--export", options.export_file, "write it as plain protobuf to this file");
+    command->add_option("--export", options.export_file, "write it as plain protobuf to this file")
+        ->check(not_empty());
     command->add_flag("--json", options.json, "print one JSON object on stdout");
     command->callback([&commands] { commands.run = [&] { return run_info(commands.info); }; });
 }
@@ -98,9 +118,19 @@ void add_info(CLI::App& app, Commands& commands) {
 void add_scenes(CLI::App& app, Commands& commands) {
     ScenesOptions& options = commands.scenes;
     CLI::App* command = app.add_subcommand("scenes", "list the built-in scenes, or check one");
-    command->add_option("--check", options.check, "scene file (or name) to check");
+    command->add_option("--check", options.check, "scene file (or name) to check")
+        ->check(not_empty());
     command->add_flag("--json", options.json, "print one JSON object on stdout");
     command->callback([&commands] { commands.run = [&] { return run_scenes(commands.scenes); }; });
+}
+
+/// CLI11 calls a mistyped command a missing one.
+std::string what_is_wrong(const CLI::App& app, int argc, char** argv, const char* words) {
+    const auto commands = app.get_subcommands([](const CLI::App* /*any*/) { return true; });
+    const bool is_mistyped =
+        argc > 1 && argv[1][0] != '-' &&
+        std::ranges::none_of(commands, [&](auto* command) { return command->check_name(argv[1]); });
+    return is_mistyped ? fmt::format("there is no command '{}'", argv[1]) : words;
 }
 
 int run(int argc, char** argv) {
@@ -121,7 +151,8 @@ int run(int argc, char** argv) {
     } catch (const CLI::Success& success) {
         return app.exit(success);
     } catch (const CLI::ParseError& error) {
-        say_error(fmt::format("{}; see lockwind --help", error.what()));
+        say_error(
+            fmt::format("{}; see lockwind --help", what_is_wrong(app, argc, argv, error.what())));
         return kExitUsage;
     }
     return commands.run();

@@ -7,10 +7,12 @@
 #include "forensics/trace.h"
 #include "program/console.h"
 #include "program/exit_code.h"
+#include "program/output_path.h"
 #include "program/progress.h"
 
 #include <fmt/format.h>
 #include <optional>
+#include <utility>
 
 namespace lockwind {
 namespace {
@@ -43,7 +45,7 @@ int replay_log(LogReader& log, const ReplayCommandOptions& options) {
         trace.emplace(TraceWriter::create(
             options.trace, trace_header(*simulation.value(), party, options.trace_states)));
         if (!*trace) {
-            return fail(trace->error().message, kExitUsage);
+            return fail(trace->error().message, kExitFile);
         }
     }
     ReplayOptions replay_options;
@@ -69,7 +71,7 @@ int replay_log(LogReader& log, const ReplayCommandOptions& options) {
         written = write_last_state(options.snapshot, party, *simulation.value());
     }
     if (!written) {
-        return fail(written.error().message, kExitUsage);
+        return fail(written.error().message, kExitFile);
     }
     fmt::print("{}",
                options.json ? replay_json(result.value()) + "\n" : replay_text(result.value()));
@@ -79,6 +81,12 @@ int replay_log(LogReader& log, const ReplayCommandOptions& options) {
 } // namespace
 
 int run_replay(const ReplayCommandOptions& options) {
+    for (const auto& [flag, path] :
+         {std::pair{"--trace", &options.trace}, std::pair{"--snapshot", &options.snapshot}}) {
+        if (const auto trouble = output_path_trouble(flag, *path, Existing::refused)) {
+            return *trouble;
+        }
+    }
     Result<LogReader> log = LogReader::open(options.log);
     if (!log) {
         return fail(log.error().message, kExitFile);

@@ -1,5 +1,6 @@
 #include "scenes_command.h"
 
+#include "codec/utf8.h"
 #include "program/exit_code.h"
 #include "scene/scene.h"
 
@@ -35,8 +36,12 @@ int fail(const ScenesOptions& options, const Error& error, int exit_code) {
 }
 
 int check(const ScenesOptions& options) {
-    if (const auto text = load_scene_text(options.check); !text) {
+    const Result<std::string> text = load_scene_text(options.check);
+    if (!text) {
         return fail(options, text.error(), kExitFile);
+    }
+    if (!is_utf8(text.value())) {
+        return fail(options, Error{options.check + ": the text is not UTF-8"}, kExitUsage);
     }
     const Result<SceneReport> report = check_scene(options.check);
     if (!report) {

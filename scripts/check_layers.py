@@ -77,7 +77,7 @@ RESERVED = [
     (r"forensics\.pb\.h", {"forensics"}, "traces and bundles are read and written by forensics alone"),
     (r".*\.pb\.h", {"codec"}, "messages become structs in codec"),
     (r"dds/.*|envelope\.h", {"transport_dds"}, "DDS is seen by its transport alone"),
-    (r"CLI/.*", {"server", "client"}, "command lines belong to the programs"),
+    (r"CLI/.*", {"server", "client", "program"}, "command lines belong to the programs and what they share"),
     (r"Eigen/.*", {"math"}, "Eigen stays behind lockwind/eigen.h"),
     (r"google/protobuf/.*", {"codec", "scene", "log", "forensics"},
      "protobuf stays with those who own a format"),

@@ -2,6 +2,7 @@
 #include "options.h"
 #include "program/console.h"
 #include "program/exit_code.h"
+#include "program/output_path.h"
 #include "program/progress.h"
 #include "program/stop_signal.h"
 #include "report.h"
@@ -12,10 +13,8 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 namespace lockwind {
 
@@ -33,24 +32,6 @@ std::string default_log_path(const MatchConfig& config) {
     return fmt::format("lockwind-{}-{:%Y%m%dT%H%M%SZ}.log",
                        config.match,
                        fmt::gmtime(std::chrono::system_clock::now()));
-}
-
-/// Nothing where a log can be created there, or the exit code of the error that was said.
-std::optional<int> log_path_trouble(const std::filesystem::path& path) {
-    std::error_code ignored;
-    if (std::filesystem::exists(path, ignored)) {
-        return fail(
-            kExitUsage,
-            fmt::format("--log {}: the file exists; a log is never overwritten", path.string()));
-    }
-    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-    if (access(folder.c_str(), W_OK) != 0) {
-        return fail(kExitFile,
-                    fmt::format("--log {}: the folder {} is missing or not writable",
-                                path.string(),
-                                folder.string()));
-    }
-    return std::nullopt;
 }
 
 void play(MatchServer& match, Transport& transport) {
@@ -106,7 +87,7 @@ int run(ServerOptions options) {
     if (options.log_path.empty()) {
         options.log_path = default_log_path(options.config);
     }
-    if (const std::optional<int> trouble = log_path_trouble(options.log_path)) {
+    if (const auto trouble = output_path_trouble("--log", options.log_path, Existing::refused)) {
         return *trouble;
     }
     MatchSettings settings;

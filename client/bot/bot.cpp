@@ -3,7 +3,7 @@
 #include "bot/log_behaviour.h"
 #include "codec/codec.h"
 #include "forensics/desync_report.h"
-#include "scene/scene.h"
+#include "forensics/match_simulation.h"
 
 #include "lockwind/player_input.h"
 
@@ -67,6 +67,9 @@ Result<Corruption> parse_corruption(std::string_view text) {
     if (!has_slot || !has_tick) {
         return Error{"--corrupt needs slot=S and tick=T, as in --corrupt slot=1,tick=300"};
     }
+    if (const Status known = WorldSimulation::check_field(corruption.field); !known) {
+        return Error{"--corrupt: " + known.error().message};
+    }
     return corruption;
 }
 
@@ -78,14 +81,8 @@ Result<std::unique_ptr<Bot>> Bot::create(const BotSettings& settings, Transport&
     if (!behaviour) {
         return behaviour.error();
     }
-    const std::span<const std::string_view> phases = World::phases();
-    if (!settings.corrupt_phase.empty() &&
-        std::find(phases.begin(), phases.end(), settings.corrupt_phase) == phases.end()) {
-        std::string message = "no phase is named '" + settings.corrupt_phase + "'; there are:";
-        for (const std::string_view phase : phases) {
-            message.append(" ").append(phase);
-        }
-        return Error{message};
+    if (const Status known = WorldSimulation::check_phase(settings.corrupt_phase); !known) {
+        return Error{"--corrupt-phase: " + known.error().message};
     }
     return std::unique_ptr<Bot>(new Bot(settings, std::move(behaviour).value(), transport));
 }
@@ -94,6 +91,7 @@ Bot::Bot(const BotSettings& settings, std::unique_ptr<Behaviour> behaviour, Tran
     : settings_(settings), behaviour_(std::move(behaviour)), transport_(transport), session_([&] {
           LockstepClientSettings client;
           client.token = settings.token;
+          client.connect_timeout_ms = settings.connect_timeout_ms;
           client.sim_version = sim_version();
           client.build_info = build_info();
           return client;
@@ -214,14 +212,7 @@ void Bot::execute(const NotifyRequest& request) {
 }
 
 Status Bot::create_world(const MatchConfig& config) {
-    const SceneOptions options{config.players, config.seed, config.tick_rate_hz};
-    const Result<WorldDefinition> definition =
-        parse_scene(config.scene_text, config.scene_name, options);
-    if (!definition) {
-        return definition.error();
-    }
-    Result<std::unique_ptr<WorldSimulation>> simulation =
-        WorldSimulation::create(definition.value());
+    Result<std::unique_ptr<WorldSimulation>> simulation = create_match_simulation(config);
     if (!simulation) {
         return simulation.error();
     }

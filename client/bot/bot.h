@@ -33,6 +33,7 @@ struct BotSettings {
     std::uint64_t token = 1;         // names the player: the same token gets its slot back; never 0
     std::string behaviour = "fight"; // or log:FILE, see log_behaviour.h
     std::uint64_t seed = 1;
+    std::uint32_t connect_timeout_ms = 30'000;
     std::optional<Corruption> corruption;
     std::string corrupt_phase; // corrupts the state after every run of this phase; "" for none
 };
@@ -51,6 +52,8 @@ public:
     std::uint64_t next_deadline_us() const;
     void leave() { session_.leave(); }
     bool ended() const { return session_.ended(); }
+    /// A server of the match was seen.
+    bool found_server() const { return connected_; }
     void listen(EventListener listener) { listener_ = std::move(listener); }
 
     const LockstepClient& session() const { return session_; }

@@ -2,7 +2,7 @@
 
 #include "codec/codec.h"
 #include "forensics/bundle.h"
-#include "scene/scene.h"
+#include "forensics/match_simulation.h"
 
 #include <algorithm>
 #include <chrono>
@@ -40,13 +40,7 @@ Result<std::unique_ptr<WorldSimulation>> make_simulation(const MatchConfig& conf
     if (const Status sendable = check(Message{welcome}); !sendable) {
         return sendable.error();
     }
-    const SceneOptions options{config.players, config.seed, config.tick_rate_hz};
-    const Result<WorldDefinition> definition =
-        parse_scene(config.scene_text, config.scene_name, options);
-    if (!definition) {
-        return definition.error();
-    }
-    return WorldSimulation::create(definition.value());
+    return create_match_simulation(config);
 }
 
 LockstepServerSettings session_settings(const MatchSettings& settings,
@@ -148,8 +142,11 @@ void MatchServer::execute(const SendRequest& request) {
 }
 
 void MatchServer::execute(const PersistRequest& request) {
-    require_logged(log_->write_tick(request.tick, request.inputs, hash_));
-    if (!failed_ && LogWriter::keyframe_due(request.tick)) {
+    if (const Status written = log_->write_tick(request.tick, request.inputs, hash_); !written) {
+        fail_log(written.error(), request.tick - 1);
+        return;
+    }
+    if (LogWriter::keyframe_due(request.tick)) {
         std::vector<std::byte> state;
         simulation_->save(state);
         const std::uint64_t hash = hash_ ? *hash_ : simulation_->state_hash();
@@ -162,7 +159,7 @@ void MatchServer::execute(const AdvanceRequest& request) {
     const std::uint64_t began_us = transport_.clock_us();
     if (const Status stepped = simulation_->advance(request.inputs); !stepped) {
         failed_ = true;
-        session_.fail(stepped.error().message);
+        session_.fail(stepped.error().message, request.tick - 1);
         return;
     }
     hash_.reset();
@@ -278,10 +275,17 @@ Result<DesyncOutcome> MatchServer::trace_desync(const BundleRequest& request) {
     return DesyncOutcome{desync, path, std::string(to_text(bundle.value().verdict)), ""};
 }
 
+/// What is told beside the ticks.
 void MatchServer::require_logged(const Status& status) {
-    if (!status && !failed_) {
+    if (!status) {
+        fail_log(status.error(), session_.confirmed_tick());
+    }
+}
+
+void MatchServer::fail_log(const Error& error, Tick recorded_tick) {
+    if (!failed_) {
         failed_ = log_failed_ = true;
-        session_.fail(status.error().message);
+        session_.fail(error.message, recorded_tick);
     }
 }
 

@@ -100,6 +100,7 @@ private:
     Status record_session_event(const SessionEvent& event);
     Result<DesyncOutcome> trace_desync(const BundleRequest& request);
     void require_logged(const Status& status);
+    void fail_log(const Error& error, Tick recorded_tick);
     void finish();
 
     std::unique_ptr<WorldSimulation> simulation_;

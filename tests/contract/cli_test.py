@@ -76,8 +76,42 @@ class CommandLine(unittest.TestCase):
         self.expect_refused(2, "--no-such-flag", "lockwind-server", "--scene", "empty",
                             "--no-such-flag")
         self.expect_refused(2, "", "lockwind")
-        self.expect_refused(2, "", "lockwind", "no-such-command")
-        self.expect_refused(2, "players", "lockwind-server", "--scene", "empty", "--players", "x")
+        self.expect_refused(2, "no command 'no-such-command'", "lockwind", "no-such-command")
+        self.expect_refused(2, "FILE is required", "lockwind", "info", "--json")
+
+    def test_numbers_are_whole_and_in_range(self):
+        server = ["lockwind-server", "--scene", "empty"]
+        for flag, value in (("players", "x"), ("players", "65"), ("seed", "-1"), ("ticks", "0"),
+                            ("ticks", "1.5"), ("domain", "0"), ("tick-rate", "")):
+            self.expect_refused(2, f"--{flag}: ", *server, f"--{flag}={value}")
+        self.expect_refused(2, "--seed: '-1'", "lockwind", "bots", "--seed", "-1")
+
+    def test_wrong_test_faults_are_refused_before_the_match(self):
+        bots = ["lockwind", "bots"]
+        self.expect_refused(2, "body.linear_velocity", *bots, "--corrupt", "slot=0,tick=9,field=body.typo")
+        self.expect_refused(2, "--corrupt", *bots, "--corrupt=")
+        self.expect_refused(2, "narrow_phase", *bots, "--corrupt-phase", "typo")
+        self.expect_refused(2, "--net", *bots, "--net", "")
+
+    def test_bots_that_find_no_server_say_where_they_looked(self):
+        done = run("lockwind", "bots", "--domain", "97", "--match", "nowhere", "--json",
+                   "--connect-timeout", "1")
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("no server was found of match 'nowhere' at 127.0.0.1, domain 97", done.stderr)
+        self.assertIsNone(json.loads(done.stdout)["bots"][0]["slot"])
+
+    def test_outputs_that_cannot_be_written_are_refused_before_the_work(self):
+        scene = self.file("old", "precious")
+        for command in (["replay", "--trace"], ["replay", "--snapshot"], ["info", "--export"],
+                        ["diff", "--junit"]):
+            name, flag = command
+            nowhere = self.folder / "nowhere" / "x"
+            self.expect_refused(3, f"{flag} {nowhere}: the folder", "lockwind", name, "a-file", flag,
+                                nowhere)
+            if flag != "--junit":
+                self.expect_refused(2, f"{flag} {scene}: the file exists", "lockwind", name, "a-file",
+                                    flag, scene)
+        self.assertEqual(scene.read_text(encoding="utf-8"), "precious")
 
     def test_missing_files_exit_3(self):
         missing = self.folder / "missing"
@@ -95,7 +129,8 @@ class CommandLine(unittest.TestCase):
     def test_what_is_not_there_yet_exits_2_and_says_so(self):
         server = ["lockwind-server", "--scene", "empty", "--log", self.folder / "x.log"]
         for flags in (["--mode", "rollback"], ["--mode", "snapshot"], ["--desync", "resync"],
-                      ["--desync", "kick"], ["--resume", "x"], ["--matches", "2"]):
+                      ["--desync", "kick"], ["--resume", ""], ["--matches", "1"],
+                      ["--metrics", "0"], ["--window", "0"]):
             self.expect_refused(2, flags[0].lstrip("-"), *server, *flags)
 
     def test_scenes_lists_and_checks_as_json(self):
@@ -106,6 +141,13 @@ class CommandLine(unittest.TestCase):
         checked = run("lockwind", "scenes", "--check", "heap_64", "--json")
         self.assertEqual(checked.returncode, 0)
         self.assertEqual(json.loads(checked.stdout)["bodies"], 65)
+
+    def test_scenes_are_text(self):
+        scene = self.folder / "bytes"
+        scene.write_bytes(b'name: "a\xff"\n')
+        done = run("lockwind", "scenes", "--check", scene, "--json")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("not UTF-8", json.loads(done.stdout)["error"])
 
     def test_scenes_names_line_and_field_of_a_mistake(self):
         scene = self.file("bad.textproto", 'name: "bad"\nbody {\n  sphere { radius: -1 }\n}\n')

@@ -40,6 +40,9 @@ public:
     bool corrupt(std::string_view field) override;
     /// As corrupt(), with an Error that says why not and lists the names there are.
     Status corrupt_field(std::string_view field);
+    /// Whether corrupt_field and set_phase_fault know the name; an Error lists those there are.
+    static Status check_field(std::string_view field);
+    static Status check_phase(std::string_view phase);
 
     /// Test tool: corrupt("") after every run of the phase in all later advances, re-simulated ones
     /// too; "" ends it. An observer sees the corrupted state. An Error lists the phases there are.

@@ -101,7 +101,7 @@ public:
     const std::string& end_message() const;
     /// The server's Refuse ended the session (end_reason() is then failed).
     bool refused() const;
-    /// Once past greeting.
+    /// kNoSlot before the first Welcome.
     Slot slot() const;
     const MatchConfig& config() const;
     /// Newest tick received without a gap, and stepped.

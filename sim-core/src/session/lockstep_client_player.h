@@ -40,7 +40,7 @@ public:
     EndReason end_reason = EndReason::complete;
     std::string end_message;
     bool refused = false;
-    Slot slot = 0;
+    Slot slot = kNoSlot;
     MatchConfig config;
     ConfirmedHistory received; // without a gap
     Tick advanced_tick = 0;

@@ -47,8 +47,8 @@ void LockstepServer::stop(const std::string& reason) {
     match_->stop(reason);
 }
 
-void LockstepServer::fail(const std::string& message) {
-    match_->fail(message);
+void LockstepServer::fail(const std::string& message, Tick recorded_tick) {
+    match_->fail(message, recorded_tick);
 }
 
 MatchPhase LockstepServer::phase() const {
@@ -114,6 +114,7 @@ RosterSettings roster_settings(const LockstepServerSettings& settings) {
     roster.interrupted_timeout_us = settings.interrupted_timeout_ms * kUsPerMs;
     roster.drop_timeout_us = settings.drop_timeout_ms * kUsPerMs;
     roster.ready_timeout_us = settings.ready_timeout_ms * kUsPerMs;
+    roster.seat_interval_us = settings.seat_interval_ms * kUsPerMs;
     return roster;
 }
 
@@ -254,6 +255,8 @@ void LockstepServer::Match::advanced(Tick tick, std::uint64_t hash, std::uint64_
     counters.tick_lateness_us.add(step_began_us > due_us ? step_began_us - due_us : 0);
     if (hash_due(settings.config, tick)) {
         ledger_.record(tick, hash);
+        previous_hash_ = state_hash;
+        previous_hash_tick_ = state_hash_tick;
         state_hash = hash;
         state_hash_tick = tick;
     }

@@ -43,6 +43,8 @@ struct LockstepServerSettings {
     std::uint32_t settle_timeout_ms = 2000;    // after the last tick, for its hashes
     std::uint32_t report_timeout_ms = 20'000;  // after a desync, for the clients' reports
     std::uint32_t close_timeout_ms = 1000;     // after End, for the answers
+    std::uint32_t seat_interval_ms = 500;      // from one player in a slot to the next
+    std::uint32_t welcome_interval_ms = 100;   // from one Welcome to its repetition
     std::uint32_t abandon_timeout_ms = 10'000; // config.ticks 0: with nobody there
     std::uint32_t hash_lag_ticks_max = 128;    // withheld for longer: dropped
     std::uint32_t catch_up_ticks_max = 4096;   // further behind: dropped
@@ -117,9 +119,10 @@ public:
     void snapshot_saved(Slot slot, Tick tick, std::uint64_t hash, std::vector<std::byte> bytes);
     /// No further ticks; settles the hashes and ends the match (SIGINT).
     void stop(const std::string& reason);
-    /// The simulation or the log failed: ends the match at once. The driver executes nothing more
-    /// of the list in which that happened, so that nobody hears of a tick that is not in the log.
-    void fail(const std::string& message);
+    /// The simulation or the log failed: ends the match at once, as it was at `recorded_tick`, the
+    /// newest tick in the log (at most one less than confirmed_tick()). The driver executes nothing
+    /// more of the list in which that happened, so that nobody hears of a tick that is not in it.
+    void fail(const std::string& message, Tick recorded_tick);
 
     MatchPhase phase() const;
     bool ended() const { return phase() == MatchPhase::ended; }

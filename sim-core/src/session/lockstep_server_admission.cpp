@@ -34,8 +34,12 @@ void LockstepServer::Match::on_hello(PeerId from, const Hello& hello) {
         }
         send(from, admission.refuse);
         break;
+    case Admission::Kind::too_soon:
+        counters.violations.add(Violation::hello_flood);
+        break;
     case Admission::Kind::repeated:
-        if (roster_.at(slot).state == SlotState::joining && lines_[slot].welcomed) {
+        if (roster_.at(slot).state == SlotState::joining && lines_[slot].welcomed &&
+            now_us_ >= lines_[slot].welcome_us) {
             welcome(slot, lines_[slot].resume_tick == 0 ? 0 : lines_[slot].snapshot.transfer());
         }
         break;
@@ -95,6 +99,7 @@ void LockstepServer::Match::welcome(Slot slot, std::uint32_t transfer) {
     message.transfer = transfer;
     message.attempt = seat.attempt;
     lines_[slot].welcomed = true;
+    lines_[slot].welcome_us = now_us_ + settings.welcome_interval_ms * kUsPerMs;
     send(seat.peer, std::move(message));
 }
 

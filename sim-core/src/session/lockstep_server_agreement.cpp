@@ -1,5 +1,7 @@
 #include "session/lockstep_server_match.h"
 
+#include "lockwind/assert.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -149,12 +151,21 @@ void LockstepServer::Match::stop(const std::string& reason) {
         end(EndReason::stopped, reason);
     } else if (phase == MatchPhase::running) {
         settle(EndReason::stopped, reason);
+    } else if (phase == MatchPhase::halted) {
+        phase_deadline_us_ =
+            std::min(phase_deadline_us_, now_us_ + settings.settle_timeout_ms * kUsPerMs);
     }
 }
 
-void LockstepServer::Match::fail(const std::string& message) {
-    if (advancing()) {
-        confirmed.retract(); // it could not be stepped, hence was neither written nor told
+void LockstepServer::Match::fail(const std::string& message, Tick recorded_tick) {
+    LOCKWIND_ASSERT(recorded_tick + 1 >= confirmed.newest_tick());
+    if (confirmed.newest_tick() > recorded_tick) {
+        confirmed.retract(); // nobody has heard of it
+    }
+    advanced_tick = std::min(advanced_tick, recorded_tick);
+    if (state_hash_tick > recorded_tick) {
+        state_hash = previous_hash_;
+        state_hash_tick = previous_hash_tick_;
     }
     end(EndReason::failed, message);
 }

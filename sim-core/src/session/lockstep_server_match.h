@@ -28,7 +28,7 @@ public:
     void advanced(Tick tick, std::uint64_t hash, std::uint64_t step_began_us);
     void snapshot_saved(Slot slot, Tick tick, std::uint64_t hash, std::vector<std::byte> bytes);
     void stop(const std::string& reason);
-    void fail(const std::string& message);
+    void fail(const std::string& message, Tick recorded_tick);
     void end(EndReason reason, const std::string& message);
     Tick oldest_needed_tick() const;
     SlotStatus slot_status(Slot slot) const;
@@ -56,6 +56,7 @@ private:
         Tick resume_tick = 0;
         std::uint64_t resume_hash = 0;
         bool welcomed = false;
+        std::uint64_t welcome_us = 0; // when it is next repeated, if asked for
         bool lagging = false; // substituted till its input is in time again
         std::uint64_t echo_us = 0;
         std::uint64_t echo_arrived_us = 0;
@@ -133,6 +134,10 @@ private:
     TickClock clock_;
     HashLedger ledger_;
     std::uint64_t status_us_ = 0; // when clients are next sent something, ticks or not
+
+    /// What a tick that is taken back leaves.
+    std::uint64_t previous_hash_ = 0;
+    Tick previous_hash_tick_ = 0;
 
     bool stalled_ = false;
     bool stall_policy_applied_ = false;

@@ -44,6 +44,14 @@ Slot Roster::free_slot() const {
     return kNoSlot;
 }
 
+/// Every change of hands costs a snapshot, a message to all and a line of the log.
+Admission
+Roster::seat_unless_too_soon(Slot slot, Admission::Kind kind, std::uint64_t now_us) const {
+    const Seat& seat = seats_[slot];
+    const bool too_soon = seat.since_us != 0 && now_us - seat.since_us < settings_.seat_interval_us;
+    return seat_in(slot, too_soon ? Admission::Kind::too_soon : kind);
+}
+
 Admission Roster::admit(PeerId from, const Hello& hello, std::uint64_t now_us) const {
     if (hello.protocol_version != kProtocolVersion) {
         return refusal(RefuseReason::protocol_version,
@@ -67,16 +75,16 @@ Admission Roster::admit(PeerId from, const Hello& hello, std::uint64_t now_us) c
                    ? refusal(RefuseReason::match_full,
                              "",
                              "all " + std::to_string(size()) + " slots of the match are taken")
-                   : seat_in(slot, Admission::Kind::seated);
+                   : seat_unless_too_soon(slot, Admission::Kind::seated, now_us);
     }
     const Seat& seat = seats_[held];
     if (!seat.connected()) {
-        return seat_in(held, Admission::Kind::seated);
+        return seat_unless_too_soon(held, Admission::Kind::seated, now_us);
     }
     if (seat.peer == from) {
-        return seat_in(held,
-                       hello.attempt > seat.attempt ? Admission::Kind::replaces
-                                                    : Admission::Kind::repeated);
+        return hello.attempt > seat.attempt
+                   ? seat_unless_too_soon(held, Admission::Kind::replaces, now_us)
+                   : seat_in(held, Admission::Kind::repeated);
     }
     if (now_us - seat.heard_us < settings_.interrupted_timeout_us) {
         return refusal(RefuseReason::token_in_use,

@@ -47,6 +47,7 @@ struct RosterSettings {
     std::uint64_t interrupted_timeout_us = 500'000;
     std::uint64_t drop_timeout_us = 2'000'000;
     std::uint64_t ready_timeout_us = 30'000'000;
+    std::uint64_t seat_interval_us = 500'000;
 };
 
 /// What a Hello leads to.
@@ -56,6 +57,7 @@ struct Admission {
         repeated = 1, // of the connection that holds the slot already
         replaces = 2, // the slot's holder comes back before he was missed: drop him first
         seated = 3,
+        too_soon = 4, // its slot changed hands a moment ago: it is to ask again
     };
     Kind kind = Kind::refused;
     Slot slot = kNoSlot;
@@ -95,6 +97,7 @@ public:
 private:
     Slot slot_of_token(std::uint64_t token) const;
     Slot free_slot() const;
+    Admission seat_unless_too_soon(Slot slot, Admission::Kind kind, std::uint64_t now_us) const;
 
     RosterSettings settings_;
     std::vector<Seat> seats_;

@@ -22,6 +22,7 @@ std::string_view to_string(Violation violation) {
         "chunk_malformed",
         "confirmation_malformed",
         "confirmation_changed",
+        "hello_flood",
     };
     return kNames[static_cast<std::size_t>(violation)];
 }

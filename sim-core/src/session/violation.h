@@ -26,8 +26,9 @@ enum class Violation : std::uint8_t {
     chunk_malformed = 13,   // sizes, count or index contradict each other or a limit
     confirmation_malformed = 14, // wrong number of slots, or ticks out of range
     confirmation_changed = 15,   // other inputs for a tick that was already confirmed
+    hello_flood = 16,            // asks for a slot that changed hands a moment ago
 };
-inline constexpr std::size_t kViolationCount = 16;
+inline constexpr std::size_t kViolationCount = 17;
 
 std::string_view to_string(Violation violation);
 

@@ -5,6 +5,7 @@
 
 #include "lockwind/player_input.h"
 
+#include <algorithm>
 #include <optional>
 
 namespace lockwind {
@@ -156,14 +157,21 @@ bool WorldSimulation::corrupt(std::string_view field) {
     return corrupt_field(field).ok();
 }
 
+Status WorldSimulation::check_field(std::string_view field) {
+    if (field.empty() || find_field(World::schema(), field)) {
+        return Success{};
+    }
+    return Error{"no field \"" + std::string(field) +
+                 "\"; the state has: " + field_names(World::schema())};
+}
+
 Status WorldSimulation::corrupt_field(std::string_view field) {
+    if (Status known = check_field(field); !known) {
+        return known;
+    }
     World& world = *impl_->world;
     const std::string_view path = field.empty() ? kDefaultField : field;
     const std::optional<FieldPlace> place = find_field(World::schema(), path);
-    if (!place) {
-        return Error{"no field \"" + std::string(path) +
-                     "\"; the state has: " + field_names(World::schema())};
-    }
     const std::optional<std::uint32_t> row = row_to_corrupt(world, place->section);
     if (!row) {
         return Error{"field \"" + std::string(path) + "\": the section has no row now"};
@@ -180,18 +188,21 @@ Status WorldSimulation::corrupt_field(std::string_view field) {
     return Success{};
 }
 
-Status WorldSimulation::set_phase_fault(std::string_view phase) {
-    if (phase.empty()) {
-        impl_->fault_phase = kNoIndex;
+Status WorldSimulation::check_phase(std::string_view phase) {
+    if (phase.empty() || std::ranges::find(World::phases(), phase) != World::phases().end()) {
         return Success{};
     }
-    for (std::uint32_t index = 0; index < World::phases().size(); ++index) {
-        if (World::phases()[index] == phase) {
-            impl_->fault_phase = index;
-            return Success{};
-        }
-    }
     return Error{"no phase \"" + std::string(phase) + "\"; the step has: " + phase_names()};
+}
+
+Status WorldSimulation::set_phase_fault(std::string_view phase) {
+    Status known = check_phase(phase);
+    if (known) {
+        const auto found = std::ranges::find(World::phases(), phase);
+        impl_->fault_phase =
+            phase.empty() ? kNoIndex : static_cast<std::uint32_t>(found - World::phases().begin());
+    }
+    return known;
 }
 
 } // namespace lockwind

@@ -1,11 +1,10 @@
 #include "log/log_reader.h"
 #include "log/log_writer.h"
 #include "log/state_pack.h"
+#include "tests/support/full_disk.h"
 #include "tests/unit/log/golden_log.h"
 #include "tests/unit/log/log_fixture.h"
 
-#include <csignal>
-#include <sys/resource.h>
 #include <sys/stat.h>
 
 namespace lockwind::test {
@@ -118,15 +117,10 @@ TEST_F(LogWriterTest, RefusesASceneTextThatIsNoUtf8) {
 TEST_F(LogWriterTest, CutsAHalfWrittenRecordOffAFullDisk) {
     const std::unique_ptr<LogWriter> writer = write_golden_match(path("match.log"), false);
     const std::uint64_t size = writer->size_bytes();
-    rlimit before{};
-    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
-    const auto ignored = std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit full{size + 5, before.rlim_max};
-    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &full), 0);
-    const Status status = writer->write_tick(5, golden_inputs(5), golden_hash(5));
-    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
-    std::signal(SIGXFSZ, ignored);
-    EXPECT_FALSE(status.ok());
+    {
+        const testing::FullDisk full(size + 5);
+        EXPECT_FALSE(writer->write_tick(5, golden_inputs(5), golden_hash(5)).ok());
+    }
     EXPECT_EQ(std::filesystem::file_size(path("match.log")), size);
     EXPECT_EQ(writer->last_tick(), 4U);
 }

@@ -1,6 +1,9 @@
 #include "forensics/diff.h"
 #include "forensics/replay.h"
+#include "tests/support/full_disk.h"
 #include "tests/support/match_harness.h"
+
+#include <filesystem>
 
 namespace lockwind {
 namespace {
@@ -102,6 +105,31 @@ TEST(Match, WritesEveryTickBeforeAnybodyHearsOfIt) {
     }));
     EXPECT_EQ(heard, 90U);
     EXPECT_GT(looks, 45U);
+}
+
+TEST(Match, AFullDiskEndsTheMatchAsItStandsInTheLog) {
+    TemporaryFolder folder;
+    const std::string path = folder.file("match.log");
+    SimulatedMatch match({.ticks = 600}, path);
+    match.add_fighters(2);
+    ASSERT_TRUE(match.run_until([&] { return match.server().session().confirmed_tick() >= 100; }));
+    {
+        const testing::FullDisk full(std::filesystem::file_size(path) + 400);
+        ASSERT_TRUE(match.run());
+    }
+    const LockstepServer& server = match.server().session();
+    EXPECT_TRUE(match.server().log_failed());
+    EXPECT_EQ(server.end_reason(), EndReason::failed);
+    EXPECT_NE(server.end_message().find(path), std::string::npos) << server.end_message();
+    EXPECT_GT(server.confirmed_tick(), 100U);
+    const ReplayResult replayed = verify(path);
+    EXPECT_EQ(replayed.ticks, server.confirmed_tick());
+    EXPECT_EQ(server.state_hash_tick(), server.confirmed_tick());
+    EXPECT_EQ(replayed.state_hash, server.state_hash());
+    EXPECT_FALSE(replayed.first_bad_tick.has_value());
+    for (std::size_t index = 0; index < 2; ++index) {
+        EXPECT_LE(match.bot(index).session().confirmed_tick(), server.confirmed_tick());
+    }
 }
 
 TEST(Match, AKilledBotComesBackIntoItsSlotAndReachesTheSameState) {

@@ -182,5 +182,19 @@ TEST(LockstepDesync, TheLastHashesCannotBeWithheldEither) {
     EXPECT_EQ(match.server.session.counters().drops, 1U);
 }
 
+TEST(LockstepDesync, AStopDoesNotWaitForAReportThatNeverComes) {
+    VirtualMatch match(VirtualMatch::server_settings(2, 300));
+    match.add_clients(2);
+    match.clients[0]->corrupt_at = 100;
+    ASSERT_TRUE(match.run([&] { return match.server.session.phase() == MatchPhase::halted; }));
+    match.network.deaf.insert(match.clients[0]->peer); // never hears the query, but is there
+    const std::uint64_t halted_us = match.now_us;
+    match.server.session.stop("interrupted by the operator");
+    ASSERT_TRUE(match.run_to_end());
+    EXPECT_EQ(match.server.session.end_reason(), EndReason::desync);
+    EXPECT_EQ(match.server.bundles.size(), 1U);
+    EXPECT_LE(match.now_us - halted_us, 3'100'000U); // settle_timeout_ms and close_timeout_ms
+}
+
 } // namespace
 } // namespace lockwind::testing

@@ -271,6 +271,35 @@ TEST(LockstepHostileServer, ClientsIgnoreWhatNoServerSays) {
     EXPECT_EQ(client.counters().reconnects, 0U);
 }
 
+TEST_F(LockstepHostile, AFloodOfHellosSeatsAtMostOneAnew) {
+    for (std::uint32_t attempt = 2; attempt < 102; ++attempt) {
+        match.inject(peer, Hello{kProtocolVersion, "v1", "", 101, attempt});
+    }
+    ASSERT_TRUE(match.run_to_end());
+    EXPECT_EQ(counted(Violation::hello_flood), 99U);
+    EXPECT_EQ(match.server.session.counters().drops, 1U);
+    EXPECT_EQ(match.server.snapshots, 1U);
+    EXPECT_EQ(match.server.session.counters().reconnects, 1U); // the honest player's
+    EXPECT_EQ(match.server.session.end_reason(), EndReason::complete);
+    EXPECT_EQ(match.server.log.size(), 200U);
+}
+
+TEST_F(LockstepHostile, AskingAgainAndAgainForAWelcomeGivesFewOfThem) {
+    VirtualMatch gathering(VirtualMatch::server_settings(2, 200));
+    LockstepServer& server = gathering.server.session;
+    int welcomes = 0;
+    for (std::uint64_t now_us = 1; now_us < 1'000'000; now_us += 1000) {
+        server.update(now_us);
+        server.receive(5, Hello{kProtocolVersion, "v1", "", 101, 1}, now_us);
+        for (const Request& request : server.take_requests()) {
+            const auto* send = std::get_if<SendRequest>(&request);
+            welcomes += send != nullptr && std::holds_alternative<Welcome>(send->message) ? 1 : 0;
+        }
+    }
+    EXPECT_GE(welcomes, 4); // who asks each 250 ms is answered each time
+    EXPECT_LE(welcomes, 10);
+}
+
 TEST(LockstepHostileServer, AnImpossibleMatchIsLeft) {
     const auto ends_with = [](const Welcome& welcome) {
         LockstepClient client(VirtualMatch::client_settings(1));

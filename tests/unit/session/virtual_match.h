@@ -199,7 +199,7 @@ private:
         } else if (const auto* advance = std::get_if<AdvanceRequest>(&request)) {
             EXPECT_EQ(advance->tick, log.size() + 1);
             if (const Status stepped = simulation.advance(advance->inputs); !stepped) {
-                session.fail(stepped.error().message);
+                session.fail(stepped.error().message, advance->tick - 1);
                 failed_ = true;
                 return;
             }
