@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace lockwind {
 
@@ -128,7 +129,30 @@ private:
             at_a += take_a ? 1 : 0;
             at_b += take_b ? 1 : 0;
         }
+        if (schema_[section].entity_field.empty()) {
+            join_strays(section, pairs);
+        }
         return pairs;
+    }
+
+    /// What names such a row is made of its own fields: two rows in one place that have no partner
+    /// are one row in which such a field differs.
+    void join_strays(std::size_t section, std::vector<RowPair>& pairs) const {
+        const auto place = [](const std::byte* row, const std::byte* first) { return row - first; };
+        for (RowPair& stray : pairs) {
+            if (stray.a == nullptr || stray.b != nullptr) {
+                continue;
+            }
+            const auto partner =
+                std::find_if(pairs.begin(), pairs.end(), [&](const RowPair& other) {
+                    return other.a == nullptr && other.b != nullptr &&
+                           place(other.b, row_b(section, 0)) == place(stray.a, row_a(section, 0));
+                });
+            if (partner != pairs.end()) {
+                stray.b = std::exchange(partner->b, nullptr);
+            }
+        }
+        std::erase_if(pairs, [](const RowPair& pair) { return pair.a == pair.b; });
     }
 
     std::vector<RowPair> match_places(std::size_t section) const {
