@@ -13,6 +13,18 @@ nlohmann::ordered_json quantiles_json(const Histogram& histogram) {
             {"max", histogram.max()}};
 }
 
+/// By reason; those that occurred.
+nlohmann::ordered_json violations_json(const ViolationCounts& violations) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    for (std::size_t index = 0; index < kViolationCount; ++index) {
+        const auto violation = static_cast<Violation>(index);
+        if (violations.of(violation) > 0) {
+            json[std::string(to_string(violation))] = violations.of(violation);
+        }
+    }
+    return json;
+}
+
 nlohmann::ordered_json or_null(const std::string& text) {
     return text.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(text);
 }
@@ -53,6 +65,9 @@ std::string report_json(const MatchServer& match) {
         {"drops", counters.drops},
         {"reconnects", counters.reconnects},
         {"joins", counters.joins},
+        {"violations", violations_json(counters.violations)},
+        {"packets_malformed", match.transport().stats().packets_malformed},
+        {"packets_spoofed", match.transport().stats().packets_spoofed},
         {"tick_lateness_us", quantiles_json(counters.tick_lateness_us)},
         {"step_us", quantiles_json(match.figures().step_us)},
         {"log", match.log().path()},
@@ -91,6 +106,9 @@ std::string report_text(const MatchServer& match) {
                     counters.stalls,
                     counters.late_inputs,
                     match.log().path());
+    if (counters.violations.total() > 0) {
+        text += fmt::format("ignored    {}\n", violations_json(counters.violations).dump());
+    }
     for (const DesyncOutcome& outcome : match.desyncs()) {
         text +=
             fmt::format("desync     slot {} at tick {}: {}\n",

@@ -56,7 +56,7 @@ void apply_rules(const ChunkAck& message, Rules& rules);
 void apply_rules(const DesyncQuery& message, Rules& rules);
 void apply_rules(const End& message, Rules& rules);
 
-inline constexpr auto kRefuseReasonMax = static_cast<std::uint64_t>(RefuseReason::match_over);
+inline constexpr auto kRefuseReasonMax = static_cast<std::uint64_t>(RefuseReason::misconduct);
 inline constexpr auto kEndReasonMax = static_cast<std::uint64_t>(EndReason::dropped);
 inline constexpr auto kBlobKindMax = static_cast<std::uint64_t>(BlobKind::desync_report);
 inline constexpr auto kSentStatusMax = static_cast<std::uint64_t>(InputStatus::disconnected);

@@ -6,7 +6,7 @@
 namespace lockwind {
 namespace {
 
-static_assert(wire::REFUSE_REASON_MATCH_OVER == static_cast<int>(RefuseReason::match_over));
+static_assert(wire::REFUSE_REASON_MISCONDUCT == static_cast<int>(RefuseReason::misconduct));
 static_assert(wire::RefuseReason_MAX == static_cast<int>(kRefuseReasonMax));
 static_assert(wire::END_REASON_DROPPED == static_cast<int>(EndReason::dropped));
 static_assert(wire::EndReason_MAX == static_cast<int>(kEndReasonMax));

@@ -30,12 +30,15 @@ enum class SendResult : std::uint8_t {
     full = 1, // not written: the writer's queue is full; retry or give up on the laggard
 };
 
-/// Payload bytes and payloads: given to send() and sent, delivered by receive().
+/// Payload bytes and payloads: given to send() and sent, delivered by receive(); and those that
+/// arrived but are not delivered.
 struct TransportStats {
     std::uint64_t bytes_out = 0;
     std::uint64_t bytes_in = 0;
     std::uint64_t packets_out = 0;
     std::uint64_t packets_in = 0;
+    std::uint64_t packets_malformed = 0; // another match's, an impossible sender, too long
+    std::uint64_t packets_spoofed = 0;   // a sender that belongs to another writer or process
 };
 
 /// One endpoint of a match: moves opaque bytes between peers. A star: the server speaks to any

@@ -126,7 +126,7 @@ void MatchServer::receive() {
     for (const Packet& packet : packets_) {
         const Result<Message> message = decode(packet.bytes, limits);
         if (!message) {
-            ++figures_.packets_malformed;
+            session_.receive_undecodable(packet.from, transport_.clock_us());
             continue;
         }
         session_.receive(packet.from, message.value(), transport_.clock_us());

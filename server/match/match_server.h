@@ -42,7 +42,6 @@ struct MatchFigures {
     std::uint64_t created = 0;
     std::uint64_t destroyed = 0;
     std::uint64_t scores = 0;
-    std::uint64_t packets_malformed = 0;
 };
 
 /// A match: the lock-step session's driver. Owns the world and the log, borrows the transport; runs
@@ -71,6 +70,7 @@ public:
     const WorldSimulation& simulation() const { return *simulation_; }
     const MatchFigures& figures() const { return figures_; }
     const std::vector<DesyncOutcome>& desyncs() const { return desyncs_; }
+    const Transport& transport() const { return transport_; }
     const LogWriter& log() const { return *log_; }
     /// The match failed because its log could not be written.
     bool log_failed() const { return log_failed_; }

@@ -220,11 +220,11 @@ void DdsTransport::accept(const lockwind_Envelope& envelope,
                : envelope.sender == kServerAddress;
     if (envelope.match_id != match_id_ || !sender_possible ||
         envelope.payload._length > kPayloadSizeBytesMax) {
-        ++counters_.malformed;
+        ++stats_.packets_malformed;
         return;
     }
     if (!senders_.admit(writer, envelope.sender, [this] { return matched_writers(); })) {
-        ++counters_.spoofed;
+        ++stats_.packets_spoofed;
         return;
     }
     if (envelope.receiver != address_ && (server || envelope.receiver != kEveryAddress)) {

@@ -15,11 +15,9 @@ struct lockwind_Envelope; // of envelope.idl
 
 namespace lockwind {
 
-/// Samples that arrived and were not delivered, and writes that failed.
+/// Samples that arrived for others, and writes that failed; what strangers send is in the stats.
 struct DdsCounters {
     std::uint64_t addressed_elsewhere = 0; // to another receiver of the match: ordinary
-    std::uint64_t spoofed = 0;             // a writer of another sender, or of another process
-    std::uint64_t malformed = 0;           // another match's key, an impossible sender, too long
     std::uint64_t writes_full = 0;         // send() returned full
 };
 

@@ -20,6 +20,10 @@ void LockstepServer::receive(PeerId from, const Message& message, std::uint64_t 
     match_->receive(from, message, now_us);
 }
 
+void LockstepServer::receive_undecodable(PeerId from, std::uint64_t now_us) {
+    match_->receive_undecodable(from, now_us);
+}
+
 void LockstepServer::update(std::uint64_t now_us) {
     match_->update(now_us);
 }
@@ -123,7 +127,8 @@ RosterSettings roster_settings(const LockstepServerSettings& settings) {
 LockstepServer::Match::Match(const LockstepServerSettings& match_settings)
     : settings(match_settings), state_hash(match_settings.initial_state_hash),
       roster_(roster_settings(match_settings)),
-      lines_(match_settings.config.players, Line(match_settings.input_size_bytes)),
+      lines_(match_settings.config.players,
+             Line(match_settings.input_size_bytes, conduct_of(match_settings))),
       clock_(match_settings.config.tick_rate_hz), ledger_(match_settings.config) {
     LOCKWIND_ASSERT(check(settings.config).ok());
     LOCKWIND_ASSERT(settings.input_size_bytes >= 1);
@@ -156,15 +161,28 @@ void LockstepServer::Match::receive(PeerId from, const Message& message, std::ui
         counters.violations.add(Violation::unknown_peer);
         return;
     }
-    if (const auto* hello = std::get_if<Hello>(&message)) {
-        on_hello(from, *hello);
-        return;
-    }
     const Slot slot = roster_.slot_of(from);
-    if (slot == kNoSlot) {
+    const std::uint64_t violations_before = counters.violations.total();
+    if (slot != kNoSlot && !lines_[slot].conduct.admit(now_us_)) {
+        counters.violations.add(Violation::message_flood);
+    } else if (const auto* hello = std::get_if<Hello>(&message)) {
+        on_hello(from, *hello);
+    } else if (slot == kNoSlot) {
         rebuke(from);
-        return;
+    } else {
+        hear(slot, message);
     }
+    check_conduct(slot, violations_before);
+}
+
+void LockstepServer::Match::receive_undecodable(PeerId from, std::uint64_t now_us) {
+    now_us_ = std::max(now_us_, now_us);
+    const std::uint64_t violations_before = counters.violations.total();
+    counters.violations.add(Violation::undecodable);
+    check_conduct(roster_.slot_of(from), violations_before);
+}
+
+void LockstepServer::Match::hear(Slot slot, const Message& message) {
     if (roster_.hear(slot, now_us_)) {
         notify(SessionEventKind::resumed, slot, confirmed.newest_tick(), "");
     }

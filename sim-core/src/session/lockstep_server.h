@@ -1,5 +1,6 @@
 #pragma once
 
+#include "session/conduct.h"
 #include "session/histogram.h"
 #include "session/match_config.h"
 #include "session/messages.h"
@@ -51,6 +52,7 @@ struct LockstepServerSettings {
     std::uint32_t confirmation_size_bytes = 1200; // to all: one datagram
     std::uint32_t catch_up_size_bytes = 50'000;   // to one that is far behind
     std::size_t report_size_bytes_max = kBlobSizeBytesMax;
+    ConductSettings conduct; // messages_per_s has 8 a tick on top
 };
 
 enum class MatchPhase : std::uint8_t {
@@ -107,6 +109,8 @@ public:
 
     /// Any message from anybody; what breaks a rule is counted and ignored.
     void receive(PeerId from, const Message& message, std::uint64_t now_us);
+    /// Bytes from anybody that could not be decoded.
+    void receive_undecodable(PeerId from, std::uint64_t now_us);
     void update(std::uint64_t now_us);
     std::vector<Request> take_requests();
     /// When update() is next needed if nothing arrives; may be in the past. UINT64_MAX: never.

@@ -55,8 +55,11 @@ void LockstepServer::Match::on_hello(PeerId from, const Hello& hello) {
 
 void LockstepServer::Match::seat(Slot slot, PeerId from, const Hello& hello) {
     const Tick tick = confirmed.newest_tick();
-    roster_.seat(slot, from, hello, now_us_);
     Line& line = lines_[slot];
+    if (roster_.at(slot).token != hello.token) {
+        line.conduct = Conduct(conduct_of(settings));
+    }
+    roster_.seat(slot, from, hello, now_us_);
     line.inputs.reset();
     line.confirmed_tick = tick;
     line.hash_tick = tick;
@@ -142,7 +145,7 @@ void LockstepServer::Match::drop(Slot slot, const std::string& why) {
     const Seat& seat = roster_.at(slot);
     ++counters.drops;
     send(seat.peer, End{EndReason::dropped, confirmed.newest_tick(), seat.attempt, why});
-    vacate(slot, seat.has_played ? SlotState::dropped : SlotState::empty);
+    vacate(slot, seat.has_played || seat.banned ? SlotState::dropped : SlotState::empty);
     notify(SessionEventKind::dropped, slot, confirmed.newest_tick(), why);
 }
 
@@ -186,6 +189,26 @@ void LockstepServer::Match::check_silence() {
             }
             break;
         }
+    }
+}
+
+ConductSettings LockstepServer::Match::conduct_of(const LockstepServerSettings& settings) {
+    ConductSettings conduct = settings.conduct;
+    conduct.messages_per_s += 8 * settings.config.tick_rate_hz;
+    return conduct;
+}
+
+/// Who held `slot` when a message of his came has broken a rule where there are more violations
+/// now.
+void LockstepServer::Match::check_conduct(Slot slot, std::uint64_t violations_before) {
+    if (slot == kNoSlot || counters.violations.total() == violations_before) {
+        return;
+    }
+    Conduct& conduct = lines_[slot].conduct;
+    conduct.offend();
+    if (!conduct.is_bearable() && roster_.at(slot).connected() && phase <= MatchPhase::settling) {
+        roster_.ban(slot);
+        drop(slot, "broke the protocol " + std::to_string(conduct.offences()) + " times");
     }
 }
 

@@ -23,6 +23,7 @@ public:
     explicit Match(const LockstepServerSettings& settings);
 
     void receive(PeerId from, const Message& message, std::uint64_t now_us);
+    void receive_undecodable(PeerId from, std::uint64_t now_us);
     void update(std::uint64_t now_us);
     std::uint64_t next_deadline_us() const;
     void advanced(Tick tick, std::uint64_t hash, std::uint64_t step_began_us);
@@ -48,7 +49,8 @@ public:
 private:
     /// What is known of a seat's connection beside the roster's Seat.
     struct Line {
-        explicit Line(std::uint32_t input_size_bytes) : inputs(input_size_bytes) {}
+        Line(std::uint32_t input_size_bytes, const ConductSettings& conduct_settings)
+            : inputs(input_size_bytes), conduct(conduct_settings) {}
 
         InputBuffer inputs;
         Tick confirmed_tick = 0; // acknowledged
@@ -57,7 +59,7 @@ private:
         std::uint64_t resume_hash = 0;
         bool welcomed = false;
         std::uint64_t welcome_us = 0; // when it is next repeated, if asked for
-        bool lagging = false; // substituted till its input is in time again
+        bool lagging = false;         // substituted till its input is in time again
         std::uint64_t echo_us = 0;
         std::uint64_t echo_arrived_us = 0;
         Tick piece_tick = 0; // confirmed_tick when the last catch-up piece was sent
@@ -65,6 +67,7 @@ private:
         std::uint64_t rebuke_us = 0; // when this former holder is next told that it was dropped
         BlobSender snapshot;
         BlobReceiver report;
+        Conduct conduct; // of the slot's player, through all his connections
         bool end_answered = false;
     };
     /// A desync whose report is awaited.
@@ -84,6 +87,8 @@ private:
     void rebuke(PeerId from);
     void vacate(Slot slot, SlotState state);
     void check_silence();
+    static ConductSettings conduct_of(const LockstepServerSettings& settings);
+    void check_conduct(Slot slot, std::uint64_t violations_before);
     void gather();
     void start();
 
@@ -120,6 +125,7 @@ private:
     void on_message_while_closing(PeerId from, const Message& message);
 
     // Shared by all.
+    void hear(Slot slot, const Message& message);
     void dispatch(Slot slot, const Message& message);
     void send(PeerId to, Message message);
     void notify(SessionEventKind kind, Slot slot, Tick tick, std::string text);

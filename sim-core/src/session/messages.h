@@ -68,6 +68,7 @@ enum class RefuseReason : std::uint8_t {
     match_full = 3,
     token_in_use = 4,
     match_over = 5,
+    misconduct = 6,
 };
 
 /// server -> client, RELIABLE.

@@ -74,6 +74,8 @@ std::string_view to_string(RefuseReason reason) {
         return "token_in_use";
     case RefuseReason::match_over:
         return "match_over";
+    case RefuseReason::misconduct:
+        return "misconduct";
     }
     return "unknown";
 }

@@ -78,6 +78,12 @@ Admission Roster::admit(PeerId from, const Hello& hello, std::uint64_t now_us) c
                    : seat_unless_too_soon(slot, Admission::Kind::seated, now_us);
     }
     const Seat& seat = seats_[held];
+    if (seat.banned) {
+        return refusal(RefuseReason::misconduct,
+                       "token",
+                       "slot " + std::to_string(held) +
+                           " was taken from this player for misconduct");
+    }
     if (!seat.connected()) {
         return seat_unless_too_soon(held, Admission::Kind::seated, now_us);
     }

@@ -29,6 +29,7 @@ struct Seat {
     std::string build_info;
     bool has_played = false;
     bool interrupted = false;
+    bool banned = false; // broke the rules too often: its token gets no seat again
     std::uint64_t heard_us = 0;
     std::uint64_t since_us = 0; // when this peer took the seat
 
@@ -74,6 +75,8 @@ public:
     /// Seats a player whom admit() has seated.
     void seat(Slot slot, PeerId peer, const Hello& hello, std::uint64_t now_us);
     void set_state(Slot slot, SlotState state);
+    /// The player's token is refused for the rest of the match.
+    void ban(Slot slot) { seats_[slot].banned = true; }
 
     /// Something arrived; true where the seat was interrupted till now.
     bool hear(Slot slot, std::uint64_t now_us);

@@ -23,6 +23,8 @@ std::string_view to_string(Violation violation) {
         "confirmation_malformed",
         "confirmation_changed",
         "hello_flood",
+        "message_flood",
+        "undecodable",
     };
     return kNames[static_cast<std::size_t>(violation)];
 }

@@ -27,8 +27,10 @@ enum class Violation : std::uint8_t {
     confirmation_malformed = 14, // wrong number of slots, or ticks out of range
     confirmation_changed = 15,   // other inputs for a tick that was already confirmed
     hello_flood = 16,            // asks for a slot that changed hands a moment ago
+    message_flood = 17,          // more messages than any player sends
+    undecodable = 18,            // bytes that are no message, or of one that travels the other way
 };
-inline constexpr std::size_t kViolationCount = 17;
+inline constexpr std::size_t kViolationCount = 19;
 
 std::string_view to_string(Violation violation);
 

@@ -107,14 +107,14 @@ TEST(CodecLimits, RefusesWelcome) {
 TEST(CodecLimits, RefusesEnumsOutOfRange) {
     expect_errors({
         {2,
-         [](auto& p) { p.mutable_refuse()->set_reason(static_cast<wire::RefuseReason>(6)); },
-         "Refuse: reason is 6, allowed are 0 .. 5"},
+         [](auto& p) { p.mutable_refuse()->set_reason(static_cast<wire::RefuseReason>(7)); },
+         "Refuse: reason is 7, allowed are 0 .. 6"},
         {2,
          [](auto& p) { p.mutable_refuse()->set_reason(static_cast<wire::RefuseReason>(-1)); },
-         "Refuse: reason is 4294967295, allowed are 0 .. 5"},
+         "Refuse: reason is 4294967295, allowed are 0 .. 6"},
         {2,
          [](auto& p) { p.mutable_refuse()->set_reason(static_cast<wire::RefuseReason>(256)); },
-         "Refuse: reason is 256, allowed are 0 .. 5"},
+         "Refuse: reason is 256, allowed are 0 .. 6"},
         {7,
          [](auto& p) { p.mutable_chunk()->set_kind(static_cast<wire::BlobKind>(2)); },
          "Chunk: kind is 2, allowed are 0 .. 1"},

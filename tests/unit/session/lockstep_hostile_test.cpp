@@ -272,16 +272,69 @@ TEST(LockstepHostileServer, ClientsIgnoreWhatNoServerSays) {
 }
 
 TEST_F(LockstepHostile, AFloodOfHellosSeatsAtMostOneAnew) {
-    for (std::uint32_t attempt = 2; attempt < 102; ++attempt) {
+    for (std::uint32_t attempt = 2; attempt < 52; ++attempt) {
         match.inject(peer, Hello{kProtocolVersion, "v1", "", 101, attempt});
     }
     ASSERT_TRUE(match.run_to_end());
-    EXPECT_EQ(counted(Violation::hello_flood), 99U);
+    EXPECT_EQ(counted(Violation::hello_flood), 49U);
     EXPECT_EQ(match.server.session.counters().drops, 1U);
     EXPECT_EQ(match.server.snapshots, 1U);
     EXPECT_EQ(match.server.session.counters().reconnects, 1U); // the honest player's
     EXPECT_EQ(match.server.session.end_reason(), EndReason::complete);
     EXPECT_EQ(match.server.log.size(), 200U);
+}
+
+/// Who breaks the rules again and again loses the slot for good; the others play on.
+class LockstepMisconduct : public LockstepHostile {
+protected:
+    void expect_banned(Violation violation, std::uint64_t count_min) {
+        ASSERT_TRUE(match.run_to_end());
+        const LockstepServer& server = match.server.session;
+        EXPECT_GE(counted(violation), count_min);
+        EXPECT_EQ(server.slot_status(slot).state, SlotState::dropped);
+        EXPECT_EQ(server.counters().drops, 1U);
+        EXPECT_EQ(server.counters().reconnects, 0U);
+        EXPECT_EQ(server.end_reason(), EndReason::complete);
+        EXPECT_EQ(match.server.log.size(), 200U);
+        EXPECT_EQ(match.clients[1]->session.end_reason(), EndReason::failed);
+        EXPECT_TRUE(match.clients[1]->session.refused());
+        EXPECT_EQ(match.clients[1]->session.end_message(),
+                  "slot " + std::to_string(slot) + " was taken from this player for misconduct");
+        EXPECT_EQ(match.clients[0]->session.end_reason(), EndReason::complete);
+        EXPECT_EQ(match.clients[0]->chain.at(200), match.server.chain.at(200));
+    }
+};
+
+TEST_F(LockstepMisconduct, SpeakingForAnotherSlot) {
+    InputBatch inputs = batch(confirmed + 5, 3, 9);
+    inputs.slot = other_slot;
+    for (int i = 0; i < 65; ++i) {
+        match.inject(peer, inputs);
+    }
+    expect_banned(Violation::wrong_slot, 65);
+    for (const auto& [tick, played] : match.server.log) {
+        EXPECT_EQ(played[other_slot].bytes, match.clients[0]->inputs_given.at(tick).bytes);
+    }
+}
+
+TEST_F(LockstepMisconduct, FloodsOfValidMessages) {
+    const std::vector<Message>& sent = match.clients[1]->sent;
+    const auto repeated = std::find_if(sent.rbegin(), sent.rend(), [](const Message& message) {
+        return std::holds_alternative<InputBatch>(message);
+    });
+    ASSERT_NE(repeated, sent.rend());
+    for (int i = 0; i < 6000; ++i) {
+        match.inject(peer, *repeated);
+    }
+    expect_banned(Violation::message_flood, 65);
+}
+
+TEST_F(LockstepMisconduct, BytesThatAreNoMessage) {
+    for (int i = 0; i < 65; ++i) {
+        match.server.session.receive_undecodable(peer, match.now_us);
+    }
+    match.server.session.receive_undecodable(4711, match.now_us); // who sits nowhere costs nobody
+    expect_banned(Violation::undecodable, 66);
 }
 
 TEST_F(LockstepHostile, AskingAgainAndAgainForAWelcomeGivesFewOfThem) {

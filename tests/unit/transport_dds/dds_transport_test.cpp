@@ -135,7 +135,7 @@ TEST_F(DdsMatch, DeliversWhatWasSentJustBeforeTheEnd) {
     clients.pop_back();
     single_process.reset();
     EXPECT_EQ(collect(*server_process, *server, 20).size(), 20U);
-    EXPECT_EQ(server->counters().spoofed, 0U);
+    EXPECT_EQ(server->stats().packets_spoofed, 0U);
 }
 
 TEST_F(DdsMatch, CountsPeersAsTheyComeAndGo) {
@@ -168,7 +168,7 @@ TEST_F(DdsMatch, KeepsMatchesApart) {
     ASSERT_EQ(in_one.size(), 1U);
     EXPECT_EQ(text_of(in_two[0]), "two");
     EXPECT_EQ(text_of(in_one[0]), "one");
-    EXPECT_EQ(clients[2]->counters().malformed, 0U);
+    EXPECT_EQ(clients[2]->stats().packets_malformed, 0U);
     EXPECT_EQ(clients[2]->counters().addressed_elsewhere, 0U);
 }
 
@@ -185,7 +185,7 @@ TEST_F(DdsMatch, DropsASenderThatBelongsToAnotherProcess) {
     std::vector<Packet> packets;
     EXPECT_TRUE(wait_for(*server_process, [&] {
         server->receive(packets);
-        return server->counters().spoofed == 2;
+        return server->stats().packets_spoofed == 2;
     }));
     EXPECT_TRUE(packets.empty());
 }
