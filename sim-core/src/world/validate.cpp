@@ -202,15 +202,19 @@ std::int64_t arm_max(const DynamicsTables& tables, BodyRow row) {
     return radius == 0 ? kPlaneDepth : radius + (radius >> 2U) + kSlack;
 }
 
+/// In units of 16 raw, so that any lengths' squares add up: arm_max has slack enough.
 bool is_within(const std::int64_t (&vector)[3], std::int64_t length) {
+    constexpr std::uint32_t kUnitBits = 4;
+    const std::int64_t longest = length >> kUnitBits;
     std::int64_t square = 0;
     for (const std::int64_t component : vector) {
         if (component > length || component < -length) {
             return false;
         }
-        square += component * component;
+        const std::int64_t coarse = component / (std::int64_t{1} << kUnitBits);
+        square += coarse * coarse;
     }
-    return square <= length * length;
+    return square <= longest * longest;
 }
 
 const char* bad_point_field(const Manifold& manifold,
