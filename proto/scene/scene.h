@@ -22,7 +22,7 @@ struct SceneOptions {
 
 /// Most bodies that a scene may define, arrangements and pods counted out.
 inline constexpr std::uint32_t kSceneBodiesMax = 100'000;
-inline constexpr std::uint32_t kScenePlayersMax = 16;
+inline constexpr std::uint32_t kScenePlayersMax = 64;
 inline constexpr std::size_t kSceneTextSizeBytesMax = 16U << 20U;
 
 /// Reads a scene (sim-core/scenes/README.md). Bodies get the ids 1, 2, 3 ... in the order of the

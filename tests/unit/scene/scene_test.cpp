@@ -262,8 +262,8 @@ TEST(SceneErrors, RefusePodsThatCannotBe) {
                        "1 } } }",
                        two),
               "t.textproto:2:8: pods.players_max is 1, but 2 players are to be seated");
-    EXPECT_EQ(error_of("name: \"t\"\npods { players_max: 17 ring_radius: 3 }"),
-              "t.textproto:2:8: pods.players_max is 17 players; give 1 .. 16 players");
+    EXPECT_EQ(error_of("name: \"t\"\npods { players_max: 65 ring_radius: 3 }"),
+              "t.textproto:2:8: pods.players_max is 65 players; give 1 .. 64 players");
     EXPECT_EQ(error_of("name: \"t\"\npods { players_max: 1 ring_radius: 3 body { mode: kinematic "
                        "sphere { radius: 1 } } }"),
               "t.textproto:2:45: pods.body.mode must be dynamic: a pod is driven by forces");
