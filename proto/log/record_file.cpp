@@ -21,6 +21,7 @@ constexpr std::size_t kSizeFieldBytes = 4;
 constexpr std::size_t kChecksumBytes = 8;
 static_assert(kSizeFieldBytes + kChecksumBytes == kRecordOverheadBytes);
 constexpr std::size_t kWindowBytes = 64U << 10U;
+static_assert(sizeof(off_t) == 8, "a log may be larger than 2 GiB");
 
 /// As in PNG: the high bit and the line ends show transfers that mangle binary files.
 constexpr std::array<std::string_view, 4> kMagics{

@@ -184,6 +184,29 @@ TEST_F(LogReaderTest, FindsKeyframesThatItCanGoOnFrom) {
     EXPECT_EQ(reader.value().ended(), LogEnd::summary);
 }
 
+TEST_F(LogReaderTest, ReadsWhatLiesBeyondFourGiB) {
+    write_golden_match(path("match.log"), true);
+    Result<LogReader> reader = LogReader::open(path("match.log"));
+    ASSERT_TRUE(reader.ok());
+    const LogIndex index = index_log(reader.value());
+    const std::string records = read_file(path("match.log")).substr(reader.value().offset());
+    constexpr std::uint64_t kFar = std::uint64_t{5} << 30U;
+    std::filesystem::resize_file(path("match.log"), kFar); // a hole: takes no room
+    std::ofstream(path("match.log"), std::ios::binary | std::ios::app) << records;
+
+    reader = LogReader::open(path("match.log"));
+    ASSERT_TRUE(reader.ok());
+    EXPECT_EQ(reader.value().file_bytes(), kFar + records.size());
+    reader.value().seek(kFar, 0);
+    Tick ticks = 0;
+    while (const std::optional<LogRecord> record = reader.value().next()) {
+        ticks += std::holds_alternative<TickRecord>(*record) ? 1 : 0;
+    }
+    EXPECT_EQ(reader.value().ended(), LogEnd::summary) << reader.value().damage();
+    EXPECT_EQ(reader.value().valid_bytes(), kFar + records.size());
+    EXPECT_EQ(ticks, index.ticks);
+}
+
 TEST_F(LogReaderTest, CountsWhatALogHolds) {
     write_golden_match(path("match.log"), true);
     Result<LogReader> reader = LogReader::open(path("match.log"));
