@@ -83,11 +83,18 @@ void add_replay(CLI::App& app, Commands& commands) {
                       "with the states, so that a diff of traces names the field");
     command->add_option("--snapshot", options.snapshot, "write the last state to this file")
         ->check(not_empty());
+    CLI::Option* bisect =
+        command
+            ->add_option("--bisect",
+                         options.bisect,
+                         "another build's lockwind: trace both, print the first divergence")
+            ->check(not_empty());
     command
-        ->add_option("--bisect",
-                     options.bisect,
-                     "another build's lockwind: trace both, print the first divergence")
-        ->check(not_empty());
+        ->add_option("--rerecord",
+                     options.rerecord,
+                     "write the log as this build records it; exit 1 where a byte differs")
+        ->check(not_empty())
+        ->excludes(bisect, "--verify", "--from", "--to", "--trace", "--trace-states", "--snapshot");
     command->add_flag("--json", options.json, "print one JSON object on stdout");
     command->callback([&commands] { commands.run = [&] { return run_replay(commands.replay); }; });
 }

@@ -3,6 +3,7 @@
 #include "bisect.h"
 #include "forensics/match_simulation.h"
 #include "forensics/replay.h"
+#include "forensics/rerecord.h"
 #include "forensics/snapshot_file.h"
 #include "forensics/trace.h"
 #include "program/console.h"
@@ -78,6 +79,21 @@ int replay_log(LogReader& log, const ReplayCommandOptions& options) {
     return replay_exit_code(result.value());
 }
 
+int rerecord_log(LogReader& log, const ReplayCommandOptions& options) {
+    Result<std::unique_ptr<WorldSimulation>> simulation =
+        create_match_simulation(log.header().config);
+    if (!simulation) {
+        return fail(options.log + ": its scene: " + simulation.error().message, kExitUsage);
+    }
+    const Result<RerecordResult> result = rerecord(log, *simulation.value(), options.rerecord);
+    if (!result) {
+        return fail(result.error().message, kExitUsage);
+    }
+    fmt::print("{}",
+               options.json ? rerecord_json(result.value()) + "\n" : rerecord_text(result.value()));
+    return rerecord_exit_code(result.value());
+}
+
 } // namespace
 
 int run_replay(const ReplayCommandOptions& options) {
@@ -102,6 +118,9 @@ int run_replay(const ReplayCommandOptions& options) {
                                 logged,
                                 sim_version()),
                     kExitUsage);
+    }
+    if (!options.rerecord.empty()) {
+        return rerecord_log(log.value(), options);
     }
     return options.bisect.empty() ? replay_log(log.value(), options) : run_bisect(options);
 }

@@ -16,6 +16,7 @@ struct ReplayCommandOptions {
     std::string trace;         // file to write a trace to; "" for none
     bool trace_states = false; // with states, so that a diff names the field
     std::string snapshot;      // file to write the last state to; "" for none
+    std::string rerecord;      // file to write the log as recorded here to; "" for none
     std::string bisect;        // another build's lockwind; "" for none
     bool json = false;
 };

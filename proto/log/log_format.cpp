@@ -9,6 +9,11 @@ std::string_view to_text(LogEnd end) {
     return kNames[static_cast<std::size_t>(end)];
 }
 
+bool is_logged(const Event& event) {
+    return event.type == EventType::created || event.type == EventType::destroyed ||
+           event.type == EventType::score;
+}
+
 std::string hash_text(std::uint64_t hash) {
     constexpr std::string_view kDigits = "0123456789abcdef";
     std::string text(16, '0');

@@ -102,6 +102,10 @@ struct EventsRecord {
     bool operator==(const EventsRecord&) const = default;
 };
 
+/// Contacts come and go by the hundred a tick and follow from the inputs; the log keeps what a
+/// person looks for.
+bool is_logged(const Event& event);
+
 /// A client reported another hash than the server's for a confirmed tick.
 struct DesyncRecord {
     Tick tick = 0;

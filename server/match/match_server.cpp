@@ -22,13 +22,6 @@ std::uint64_t unix_time_us() {
         std::chrono::duration_cast<std::chrono::microseconds>(now).count());
 }
 
-/// Contacts come and go by the hundred a tick and follow from the inputs; the log keeps what a
-/// person looks for.
-bool is_logged(const Event& event) {
-    return event.type == EventType::created || event.type == EventType::destroyed ||
-           event.type == EventType::score;
-}
-
 /// The match's world, or what is wrong with its configuration or scene.
 Result<std::unique_ptr<WorldSimulation>> make_simulation(const MatchConfig& config) {
     if (const Status valid = check(config); !valid) {

@@ -22,7 +22,7 @@ FLAGS = {
     "lockwind-server": "scene mode players ticks tick-rate seed listen domain match input-delay window "
                        "join-timeout hash-interval desync log resume matches metrics json",
     "lockwind bots": "count server domain match behaviour seed net corrupt corrupt-phase json",
-    "lockwind replay": "verify from to trace bisect json",
+    "lockwind replay": "verify from to trace rerecord bisect json",
     "lockwind diff": "json junit",
     "lockwind info": "json export",
     "lockwind scenes": "check json",

@@ -1,9 +1,15 @@
 #include "forensics/diff.h"
+#include "forensics/match_simulation.h"
 #include "forensics/replay.h"
+#include "forensics/rerecord.h"
+#include "log/log_codec.h"
+#include "log/log_writer.h"
 #include "tests/support/full_disk.h"
 #include "tests/support/match_harness.h"
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 namespace lockwind {
 namespace {
@@ -47,6 +53,92 @@ TEST(Match, AllPartiesAndTheReplayReachTheSameState) {
     EXPECT_GT(match.server().figures().contacts.max(), 0U);
     EXPECT_GT(match.server().figures().created, 0U) << "nobody shot";
     EXPECT_GT(match.server().figures().destroyed, 0U);
+}
+
+RerecordResult record_again(const std::string& from, const std::string& to) {
+    LogReader log = LogReader::open(from).value();
+    const std::unique_ptr<WorldSimulation> simulation =
+        create_match_simulation(log.header().config).value();
+    const Result<RerecordResult> result = rerecord(log, *simulation, to);
+    EXPECT_TRUE(result.ok()) << result.error().message;
+    return result.value();
+}
+
+std::string content(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(Match, ALogRecordedAgainHasTheSameBytes) {
+    TemporaryFolder folder;
+    const std::string path = folder.file("match.log");
+    // Past a keyframe, with a drop, a reconnection and ticks without a hash.
+    SimulatedMatch match({.ticks = kKeyframeIntervalTicks + 30, .hash_interval_ticks = 7}, path);
+    match.add_fighters(2);
+    ASSERT_TRUE(match.run_until([&] { return match.server().session().confirmed_tick() > 100; }));
+    match.kill_bot(1);
+    ASSERT_TRUE(match.run_until([&] { return match.server().session().counters().drops == 1; }));
+    BotSettings again;
+    again.token = again.seed = 2;
+    match.add_bot(again);
+    ASSERT_TRUE(match.run());
+    EXPECT_GT(match.server().figures().created, 0U) << "no events in the log";
+
+    const RerecordResult result = record_again(path, folder.file("again.log"));
+    EXPECT_EQ(result.first_different_byte, std::nullopt);
+    EXPECT_EQ(result.ticks, kKeyframeIntervalTicks + 30);
+    EXPECT_EQ(result.ended, LogEnd::summary);
+    EXPECT_EQ(rerecord_exit_code(result), 0);
+    EXPECT_TRUE(content(path) == content(folder.file("again.log")));
+
+    // An existing file is never overwritten.
+    LogReader log = LogReader::open(path).value();
+    EXPECT_FALSE(rerecord(log, *create_match_simulation(log.header().config).value(), path).ok());
+}
+
+TEST(Match, ALogWithAnotherHashIsRecordedAgainWithTheRightOne) {
+    TemporaryFolder folder;
+    const std::string path = folder.file("false.log");
+    const MatchConfig config =
+        SimulatedMatch({.ticks = 1}, folder.file("true.log")).server().session().config();
+    std::unique_ptr<WorldSimulation> simulation = create_match_simulation(config).value();
+    LogHeader header;
+    header.config = config;
+    header.input_size_bytes = simulation->input_size_bytes();
+    const std::unique_ptr<LogWriter> log = LogWriter::create(path, header).value();
+    ASSERT_TRUE(log->write_start_hash(simulation->state_hash()));
+    const std::uint64_t good_bytes = log->size_bytes();
+    const std::vector<SlotInput> inputs(config.players);
+    ASSERT_TRUE(simulation->advance(inputs));
+    ASSERT_TRUE(log->write_tick(1, inputs, simulation->state_hash() + 1));
+
+    const RerecordResult result = record_again(path, folder.file("again.log"));
+    ASSERT_TRUE(result.first_different_byte.has_value());
+    EXPECT_GT(*result.first_different_byte, good_bytes);
+    EXPECT_EQ(result.bytes, log->size_bytes());
+    EXPECT_EQ(rerecord_exit_code(result), 1);
+    EXPECT_FALSE(verify(folder.file("again.log")).first_bad_tick.has_value());
+}
+
+TEST(Match, ARecordOfASlotThatTheMatchHasNotIsNotRecordedAgain) {
+    TemporaryFolder folder;
+    LogHeader header;
+    header.config =
+        SimulatedMatch({.ticks = 1}, folder.file("true.log")).server().session().config();
+    header.config.players = 8;
+    header.input_size_bytes = create_match_simulation(header.config).value()->input_size_bytes();
+    const std::string path = folder.file("forged.log");
+    {
+        std::string payload = encode_header(header);
+        RecordWriter file = RecordWriter::create(path, FileKind::log, payload).value();
+        ASSERT_TRUE(file.write(encode_record(JoinRecord{1, 63, false, ""}, 1)));
+    }
+    LogReader log = LogReader::open(path).value();
+    const std::unique_ptr<WorldSimulation> simulation =
+        create_match_simulation(header.config).value();
+    const Result<RerecordResult> result = rerecord(log, *simulation, folder.file("again.log"));
+    ASSERT_FALSE(result.ok());
+    EXPECT_NE(result.error().message.find("slot 63"), std::string::npos) << result.error().message;
 }
 
 TEST(Match, AnotherSeedGivesAnotherState) {
