@@ -16,10 +16,11 @@ public:
 
     PlayerInput decide(const World&, Slot slot, Tick tick) override {
         // A log's ticks are consecutive from 1.
-        if (tick == 0 || tick > ticks_.size() || slot >= ticks_[tick - 1].inputs.size()) {
+        if (tick == 0 || tick > ticks_.size()) {
             return {};
         }
-        return decode_player_input(ticks_[tick - 1].inputs[slot]);
+        const std::vector<SlotInput>& inputs = ticks_[static_cast<std::size_t>(tick - 1)].inputs;
+        return slot < inputs.size() ? decode_player_input(inputs[slot]) : PlayerInput{};
     }
 
 private:

@@ -48,7 +48,8 @@ void Progress::draw(std::string_view note) {
         fmt::print(stderr, "{} {}{}{}\n", label_, count, note.empty() ? "" : "  ", note);
         return;
     }
-    const std::uint64_t filled = total_ > 0 ? std::min(done_, total_) * kBarWidth / total_ : 0;
+    const auto filled =
+        static_cast<std::size_t>(total_ > 0 ? std::min(done_, total_) * kBarWidth / total_ : 0);
     const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '.');
     fmt::print(stderr, "\r{} [{}] {}  {}\x1b[K", label_, bar, count, note);
     std::fflush(stderr);

@@ -27,7 +27,7 @@ std::span<const SlotInput> ConfirmedHistory::find(Tick tick) const {
     if (tick < oldest_tick() || tick > newest_tick_) {
         return {};
     }
-    return ticks_[tick - oldest_tick()];
+    return ticks_[static_cast<std::size_t>(tick - oldest_tick())];
 }
 
 void ConfirmedHistory::fill(Confirmation& confirmation,

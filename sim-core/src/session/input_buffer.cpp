@@ -34,7 +34,7 @@ std::uint32_t InputBuffer::receive(Tick first_tick,
             too_old = true;
         } else if (!well_formed(input)) {
             malformed = true;
-        } else if (Entry& entry = entries_[tick % entries_.size()]; entry.tick == tick) {
+        } else if (Entry& entry = entries_[index_of(tick)]; entry.tick == tick) {
             changed = changed || entry.input != input;
         } else {
             entry = Entry{tick, input};
@@ -54,7 +54,7 @@ std::uint32_t InputBuffer::receive(Tick first_tick,
 }
 
 const SlotInput* InputBuffer::find(Tick tick) const {
-    const Entry& entry = entries_[tick % entries_.size()];
+    const Entry& entry = entries_[index_of(tick)];
     return tick != 0 && entry.tick == tick ? &entry.input : nullptr;
 }
 

@@ -6,6 +6,7 @@
 #include "lockwind/types.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -43,6 +44,9 @@ private:
     };
 
     bool well_formed(const SlotInput& input) const;
+    static std::size_t index_of(Tick tick) {
+        return static_cast<std::size_t>(tick % (2 * kInputWindowTicks));
+    }
 
     std::uint32_t input_size_bytes_;
     Tick late_after_tick_ = ~Tick{0};
