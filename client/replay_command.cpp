@@ -87,7 +87,7 @@ int rerecord_log(LogReader& log, const ReplayCommandOptions& options) {
     }
     const Result<RerecordResult> result = rerecord(log, *simulation.value(), options.rerecord);
     if (!result) {
-        return fail(result.error().message, kExitUsage);
+        return fail(result.error().message, kExitFile);
     }
     fmt::print("{}",
                options.json ? rerecord_json(result.value()) + "\n" : rerecord_text(result.value()));
@@ -97,8 +97,9 @@ int rerecord_log(LogReader& log, const ReplayCommandOptions& options) {
 } // namespace
 
 int run_replay(const ReplayCommandOptions& options) {
-    for (const auto& [flag, path] :
-         {std::pair{"--trace", &options.trace}, std::pair{"--snapshot", &options.snapshot}}) {
+    for (const auto& [flag, path] : {std::pair{"--trace", &options.trace},
+                                     std::pair{"--snapshot", &options.snapshot},
+                                     std::pair{"--rerecord", &options.rerecord}}) {
         if (const auto trouble = output_path_trouble(flag, *path, Existing::refused)) {
             return *trouble;
         }
