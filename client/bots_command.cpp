@@ -161,6 +161,7 @@ int exit_code_of(const std::vector<const Bot*>& bots, const std::string& place) 
 } // namespace
 
 int run_bots(const BotsOptions& options) {
+    catch_stop_signals();
     const Result<BotSettings> settings = bot_settings(options);
     if (!settings) {
         return fail(kExitUsage, settings.error().message);
@@ -188,7 +189,6 @@ int run_bots(const BotsOptions& options) {
         return fail(options.behaviour.starts_with("log:") ? kExitFile : kExitUsage,
                     seated.error().message);
     }
-    catch_stop_signals();
     const std::string place =
         fmt::format("match '{}' at {}, domain {}", options.match, options.server, options.domain);
     say_info("looking for " + place);

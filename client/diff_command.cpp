@@ -7,6 +7,7 @@
 #include "program/exit_code.h"
 #include "program/output_path.h"
 
+#include <filesystem>
 #include <fmt/format.h>
 #include <string>
 #include <variant>
@@ -122,6 +123,13 @@ Outcome compare(const DiffCommandOptions& options) {
 int run_diff(const DiffCommandOptions& options) {
     if (const auto trouble = output_path_trouble("--junit", options.junit, Existing::replaced)) {
         return *trouble;
+    }
+    std::error_code ignored;
+    if (std::filesystem::exists(options.junit, ignored) && detect_file_kind(options.junit).ok()) {
+        say_error(fmt::format("--junit {}: a {} is never overwritten",
+                              options.junit,
+                              to_text(detect_file_kind(options.junit).value())));
+        return kExitUsage;
     }
     Outcome outcome = compare(options);
     if (const auto* failure = std::get_if<Failure>(&outcome)) {

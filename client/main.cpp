@@ -71,7 +71,7 @@ void add_bots(CLI::App& app, Commands& commands) {
 void add_replay(CLI::App& app, Commands& commands) {
     ReplayCommandOptions& options = commands.replay;
     CLI::App* command = app.add_subcommand("replay", "step a log's inputs again");
-    command->add_option("LOG", options.log, "the log")->required();
+    command->add_option("LOG", options.log, "the log")->check(not_empty())->required();
     command->add_flag("--verify", options.verify, "compare every hash; exit 1 at a difference");
     command->add_option("--from", options.from, "first tick to step, from the keyframe before it")
         ->check(whole_number());
@@ -103,7 +103,9 @@ void add_diff(CLI::App& app, Commands& commands) {
     DiffCommandOptions& options = commands.diff;
     CLI::App* command = app.add_subcommand(
         "diff", "the first divergence: of a bundle, or of two logs, traces or snapshots");
-    command->add_option("A", options.a, "a bundle, log, trace or snapshot")->required();
+    command->add_option("A", options.a, "a bundle, log, trace or snapshot")
+        ->check(not_empty())
+        ->required();
     command->add_option("B", options.b, "what to compare it with; not for a bundle")
         ->check(not_empty());
     command->add_option("--junit", options.junit, "write JUnit XML to this file, for CI")
@@ -115,7 +117,9 @@ void add_diff(CLI::App& app, Commands& commands) {
 void add_info(CLI::App& app, Commands& commands) {
     InfoCommandOptions& options = commands.info;
     CLI::App* command = app.add_subcommand("info", "what a log, trace, bundle or snapshot holds");
-    command->add_option("FILE", options.file, "any file that the tools wrote")->required();
+    command->add_option("FILE", options.file, "any file that the tools wrote")
+        ->check(not_empty())
+        ->required();
     command->add_option("--export", options.export_file, "write it as plain protobuf to this file")
         ->check(not_empty());
     command->add_flag("--json", options.json, "print one JSON object on stdout");

@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 #include <optional>
+#include <unistd.h>
 #include <utility>
 
 namespace lockwind {
@@ -103,6 +104,12 @@ int run_replay(const ReplayCommandOptions& options) {
         if (const auto trouble = output_path_trouble(flag, *path, Existing::refused)) {
             return *trouble;
         }
+    }
+    if (!options.trace.empty() && options.trace == options.snapshot) {
+        return fail("--trace and --snapshot name the same file", kExitUsage);
+    }
+    if (!options.bisect.empty() && access(options.bisect.c_str(), X_OK) != 0) {
+        return fail(fmt::format("--bisect {}: no program", options.bisect), kExitFile);
     }
     Result<LogReader> log = LogReader::open(options.log);
     if (!log) {

@@ -56,13 +56,17 @@ int exit_code_of(const MatchServer& match) {
     if (match.session().counters().desyncs > 0) {
         return kExitDiverged;
     }
+    if (!match.log_trouble().empty()) {
+        return fail(kExitFile, match.log_trouble());
+    }
     if (match.session().end_reason() == EndReason::failed) {
-        return fail(match.log_failed() ? kExitFile : kExitNetwork, match.session().end_message());
+        return fail(kExitNetwork, match.session().end_message());
     }
     return kExitDone;
 }
 
 int run(ServerOptions options) {
+    catch_stop_signals(); // a stop during the preparations ends the match when it begins
     Result<std::string> scene = load_scene_text(options.config.scene_name);
     if (!scene) {
         return fail(kExitFile, scene.error().message);
@@ -99,7 +103,6 @@ int run(ServerOptions options) {
         return fail(kExitFile, match.error().message);
     }
     match.value()->listen([](const SessionEvent& event) { say_info(describe(event)); });
-    catch_stop_signals();
     say_info(fmt::format("match '{}' on domain {}: waiting for {} players",
                          options.config.match,
                          options.domain,

@@ -6,6 +6,7 @@
 #include "session/match_config.h"
 #include "transport/dds/dds_participant.h"
 
+#include "lockwind/world_definition.h"
 #include "lockwind/world_simulation.h"
 
 #include <algorithm>
@@ -63,7 +64,7 @@ void add_match_flags(CLI::App& app, ServerOptions& options) {
     app.add_option("--ticks", config.ticks, "length of the match; without it, until all have left")
         ->check(whole_number(1, kMatchTicksMax));
     app.add_option("--tick-rate", config.tick_rate_hz, "ticks a second")
-        ->check(whole_number(0, UINT32_MAX))
+        ->check(whole_number(kWorldTickRateHzMin, kWorldTickRateHzMax))
         ->capture_default_str();
     app.add_option("--seed", config.seed, "of the world's random draws")
         ->check(whole_number())
@@ -71,10 +72,10 @@ void add_match_flags(CLI::App& app, ServerOptions& options) {
     app.add_option("--match", config.match, "name of the match; bots join by it")
         ->capture_default_str();
     app.add_option("--input-delay", config.input_delay_ticks, "ticks from an input to its effect")
-        ->check(whole_number(0, UINT32_MAX))
+        ->check(whole_number(0, kInputDelayTicksMax))
         ->capture_default_str();
     app.add_option("--hash-interval", config.hash_interval_ticks, "ticks from hash to hash")
-        ->check(whole_number(0, UINT32_MAX))
+        ->check(whole_number(1, kHashIntervalTicksMax))
         ->capture_default_str();
 }
 

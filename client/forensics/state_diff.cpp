@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <utility>
 
 namespace lockwind {
 
@@ -135,24 +134,28 @@ private:
         return pairs;
     }
 
-    /// What names such a row is made of its own fields: two rows in one place that have no partner
-    /// are one row in which such a field differs.
+    /// What names such a row is made of its own fields: where each side has one row without a
+    /// partner, in the same place, they are one row in which such a field differs.
     void join_strays(std::size_t section, std::vector<RowPair>& pairs) const {
-        const auto place = [](const std::byte* row, const std::byte* first) { return row - first; };
-        for (RowPair& stray : pairs) {
-            if (stray.a == nullptr || stray.b != nullptr) {
-                continue;
+        const auto stray_of = [&pairs](const std::byte* RowPair::*side) -> RowPair* {
+            RowPair* stray = nullptr;
+            for (RowPair& pair : pairs) {
+                if (pair.*side == nullptr) {
+                    if (stray != nullptr) {
+                        return nullptr; // more than one
+                    }
+                    stray = &pair;
+                }
             }
-            const auto partner =
-                std::find_if(pairs.begin(), pairs.end(), [&](const RowPair& other) {
-                    return other.a == nullptr && other.b != nullptr &&
-                           place(other.b, row_b(section, 0)) == place(stray.a, row_a(section, 0));
-                });
-            if (partner != pairs.end()) {
-                stray.b = std::exchange(partner->b, nullptr);
-            }
+            return stray;
+        };
+        RowPair* const of_a = stray_of(&RowPair::b);
+        RowPair* const of_b = stray_of(&RowPair::a);
+        if (of_a != nullptr && of_b != nullptr &&
+            of_a->a - row_a(section, 0) == of_b->b - row_b(section, 0)) {
+            of_a->b = of_b->b;
+            pairs.erase(pairs.begin() + (of_b - pairs.data()));
         }
-        std::erase_if(pairs, [](const RowPair& pair) { return pair.a == pair.b; });
     }
 
     std::vector<RowPair> match_places(std::size_t section) const {

@@ -136,9 +136,10 @@ void MatchServer::execute(const SendRequest& request) {
 
 void MatchServer::execute(const PersistRequest& request) {
     if (const Status written = log_->write_tick(request.tick, request.inputs, hash_); !written) {
-        fail_log(written.error(), request.tick - 1);
+        fail_log(written.error());
         return;
     }
+    recorded_tick_ = request.tick;
     if (LogWriter::keyframe_due(request.tick)) {
         std::vector<std::byte> state;
         simulation_->save(state);
@@ -152,7 +153,7 @@ void MatchServer::execute(const AdvanceRequest& request) {
     const std::uint64_t began_us = transport_.clock_us();
     if (const Status stepped = simulation_->advance(request.inputs); !stepped) {
         failed_ = true;
-        session_.fail(stepped.error().message, request.tick - 1);
+        session_.fail(stepped.error().message, recorded_tick_);
         return;
     }
     hash_.reset();
@@ -227,10 +228,9 @@ Status MatchServer::record_session_event(const SessionEvent& event) {
             {desync->bad_tick, desync->slot, desync->server_hash, desync->client_hash});
     }
     case SessionEventKind::paused:
-        paused_at_us_ = transport_.clock_us();
         return Success{};
     case SessionEventKind::unpaused:
-        return log_->write_pause({event.tick, transport_.clock_us() - paused_at_us_, event.text});
+        return log_->write_pause({event.tick, event.duration_us, event.text});
     default:
         return Success{};
     }
@@ -271,14 +271,15 @@ Result<DesyncOutcome> MatchServer::trace_desync(const BundleRequest& request) {
 /// What is told beside the ticks.
 void MatchServer::require_logged(const Status& status) {
     if (!status) {
-        fail_log(status.error(), session_.confirmed_tick());
+        fail_log(status.error());
     }
 }
 
-void MatchServer::fail_log(const Error& error, Tick recorded_tick) {
+void MatchServer::fail_log(const Error& error) {
     if (!failed_) {
-        failed_ = log_failed_ = true;
-        session_.fail(error.message, recorded_tick);
+        failed_ = true;
+        log_trouble_ = error.message;
+        session_.fail(error.message, recorded_tick_);
     }
 }
 

@@ -72,8 +72,8 @@ public:
     const std::vector<DesyncOutcome>& desyncs() const { return desyncs_; }
     const Transport& transport() const { return transport_; }
     const LogWriter& log() const { return *log_; }
-    /// The match failed because its log could not be written.
-    bool log_failed() const { return log_failed_; }
+    /// Why the log, be it only its summary, could not be written; "" where it was.
+    const std::string& log_trouble() const { return log_trouble_; }
 
 private:
     MatchServer(std::unique_ptr<WorldSimulation> simulation,
@@ -100,7 +100,7 @@ private:
     Status record_session_event(const SessionEvent& event);
     Result<DesyncOutcome> trace_desync(const BundleRequest& request);
     void require_logged(const Status& status);
-    void fail_log(const Error& error, Tick recorded_tick);
+    void fail_log(const Error& error);
     void finish();
 
     std::unique_ptr<WorldSimulation> simulation_;
@@ -112,10 +112,10 @@ private:
     MatchFigures figures_;
     std::vector<DesyncOutcome> desyncs_;
     std::optional<std::uint64_t> hash_; // of the tick that was just stepped, where due
-    std::uint64_t paused_at_us_ = 0;
+    Tick recorded_tick_ = 0;            // newest one in the log
     bool failed_ = false;
     bool failure_told_ = false; // the list of requests in which it happened is over
-    bool log_failed_ = false;
+    std::string log_trouble_;
     bool finished_ = false;
     std::vector<Packet> packets_;      // scratch
     std::vector<std::byte> encoded_;   // scratch

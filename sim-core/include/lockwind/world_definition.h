@@ -10,6 +10,9 @@
 
 namespace lockwind {
 
+inline constexpr std::uint32_t kWorldTickRateHzMin = 10;
+inline constexpr std::uint32_t kWorldTickRateHzMax = 240;
+
 enum class BodyMode : std::uint8_t { fixed = 0, kinematic = 1, dynamic = 2 };
 
 struct BodyDefinition {
@@ -41,7 +44,7 @@ struct PodDefinition {
 };
 
 struct WorldSettings {
-    std::uint32_t tick_rate_hz = 60; // 10 .. 240
+    std::uint32_t tick_rate_hz = 60; // kWorldTickRateHzMin .. kWorldTickRateHzMax
     std::uint32_t substeps = 4;      // 1 .. 16
     Vec3 gravity{0, -9.81, 0};       // m/s^2
     Real linear_speed_max = 400.0;   // m/s

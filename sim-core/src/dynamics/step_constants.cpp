@@ -2,6 +2,8 @@
 
 #include "dynamics/solver_format.h"
 
+#include "lockwind/world_definition.h"
+
 #include <algorithm>
 
 namespace lockwind {
@@ -49,7 +51,8 @@ Reciprocal make_reciprocal(std::uint32_t divisor) {
 
 StepConstants make_step_constants(const DynamicsSettings& settings) {
     StepConstants constants{};
-    constants.tick_rate = std::clamp(settings.tick_rate_hz, kTickRateMin, kTickRateMax);
+    constants.tick_rate =
+        std::clamp(settings.tick_rate_hz, kWorldTickRateHzMin, kWorldTickRateHzMax);
     constants.substeps = std::clamp(settings.substeps, std::uint32_t{1}, kSubstepsMax);
     const std::uint32_t rate = constants.tick_rate * constants.substeps;
     constants.substep_rate = static_cast<std::int32_t>(rate);

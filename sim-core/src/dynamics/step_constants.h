@@ -6,8 +6,6 @@
 
 namespace lockwind {
 
-inline constexpr std::uint32_t kTickRateMin = 10; // Hz
-inline constexpr std::uint32_t kTickRateMax = 240;
 inline constexpr std::uint32_t kSubstepsMax = 16;
 
 /// Highest speed that the solver's Q11.20 holds with room for the relative velocity of two bodies

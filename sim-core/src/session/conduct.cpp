@@ -4,16 +4,15 @@
 
 namespace lockwind {
 
-bool Conduct::admit(std::uint64_t now_us) {
-    const std::uint64_t full = std::uint64_t{settings_.messages_burst} * kUsPerS;
-    // Longer silences fill it too; the bound keeps the product in its type.
-    const std::uint64_t elapsed_us = std::min(now_us - admitted_us_, std::uint64_t{3600} * kUsPerS);
-    allowance_ = std::min(full, allowance_ + elapsed_us * settings_.messages_per_s);
-    admitted_us_ = now_us;
-    if (allowance_ < kUsPerS) {
+bool TokenBucket::take(std::uint64_t now_us) {
+    // An hour fills any; the bound keeps the product in its type.
+    const std::uint64_t elapsed_us = std::min(now_us - filled_us_, 3600 * kUsPerS);
+    tokens_ = std::min(full_, tokens_ + elapsed_us * per_s_);
+    filled_us_ = now_us;
+    if (tokens_ < kUsPerS) {
         return false;
     }
-    allowance_ -= kUsPerS;
+    tokens_ -= kUsPerS;
     return true;
 }
 

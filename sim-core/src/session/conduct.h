@@ -4,34 +4,40 @@
 
 namespace lockwind {
 
-struct ConductSettings {
-    std::uint32_t messages_per_s = 2500; // on average
-    std::uint32_t messages_burst = 5000; // at once, after a silence
-    std::uint32_t offences_max = 64;     // messages that broke a rule
-};
-
-/// How the holder of a slot keeps to the protocol. Links lose, double and delay messages, but never
-/// make them break a rule, or come by the thousand: who does so again and again has no place.
-class Conduct {
+/// Lets `burst` through at once and `per_s` a second on average; starts full.
+class TokenBucket {
 public:
-    explicit Conduct(const ConductSettings& settings)
-        : settings_(settings), allowance_(std::uint64_t{settings.messages_burst} * kUsPerS) {}
+    TokenBucket(std::uint32_t per_s, std::uint32_t burst)
+        : per_s_(per_s), full_(burst * kUsPerS), tokens_(full_) {}
 
-    /// A message arrived; false where it is one too many (a token bucket: messages_per_s into
-    /// messages_burst).
-    bool admit(std::uint64_t now_us);
-    void offend() { ++offences_; }
-
-    bool is_bearable() const { return offences_ <= settings_.offences_max; }
-    std::uint64_t offences() const { return offences_; }
+    /// False where there is none left.
+    bool take(std::uint64_t now_us);
 
 private:
     static constexpr std::uint64_t kUsPerS = 1'000'000;
 
-    ConductSettings settings_;
-    std::uint64_t allowance_; // messages * kUsPerS
-    std::uint64_t admitted_us_ = 0;
-    std::uint64_t offences_ = 0;
+    std::uint64_t per_s_;
+    std::uint64_t full_;
+    std::uint64_t tokens_; // in units of 1 / kUsPerS
+    std::uint64_t filled_us_ = 0;
+};
+
+struct ConductSettings {
+    std::uint32_t messages_per_s = 2500;
+    std::uint32_t messages_burst = 5000;
+    std::uint32_t offences_per_s = 1;
+    std::uint32_t offences_burst = 64;
+};
+
+/// How the holder of a slot keeps to the protocol: he may send so many messages, and offend
+/// (violation.h) so often, before he loses the slot.
+struct Conduct {
+    explicit Conduct(const ConductSettings& settings)
+        : messages(settings.messages_per_s, settings.messages_burst),
+          offences(settings.offences_per_s, settings.offences_burst) {}
+
+    TokenBucket messages;
+    TokenBucket offences;
 };
 
 } // namespace lockwind

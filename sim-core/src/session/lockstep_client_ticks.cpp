@@ -1,3 +1,4 @@
+#include "session/input_buffer.h"
 #include "session/lockstep_client_player.h"
 
 #include "lockwind/assert.h"
@@ -15,8 +16,8 @@ constexpr std::uint64_t kKeepAliveUs = 100'000;
 constexpr std::uint64_t kHashResendUs = 250'000;
 /// Confirmed ticks this far behind a gap are not kept.
 constexpr Tick kAheadTicksMax = 2 * kConfirmationTicksMax;
-/// Inputs that far ahead of the simulation fit the server's window with room to spare.
-constexpr Tick kLeadTicksMax = 64;
+/// Room in the server's window of inputs behind the one that is furthest ahead.
+constexpr Tick kWindowRoomTicks = 8;
 /// Received ticks that are kept to notice that one is told differently later.
 constexpr Tick kKeptTicks = 128;
 
@@ -124,7 +125,9 @@ void LockstepClient::Player::take_ack(const SlotAck& ack) {
 
 /// Ticks that pass while a confirmation and the input it leads to are under way.
 Tick LockstepClient::Player::lead_ticks() const {
-    return std::min(round_trip_.bound_us() / tick_period_us(config), kLeadTicksMax);
+    const Tick taken = config.input_delay_ticks + kWindowRoomTicks;
+    const Tick longest = kInputWindowTicks - std::min(kInputWindowTicks, taken);
+    return std::min(round_trip_.bound_us() / tick_period_us(config), longest);
 }
 
 /// Newest tick whose input may be given now. It follows the client's own steps, not a clock: a

@@ -144,6 +144,15 @@ void LockstepServer::Match::notify(SessionEventKind kind, Slot slot, Tick tick, 
     requests.push_back(NotifyRequest{SessionEvent{kind, slot, tick, std::move(text)}});
 }
 
+void LockstepServer::Match::notify_unpaused(Tick tick,
+                                            std::uint64_t duration_us,
+                                            const std::string& why) {
+    SessionEvent event{SessionEventKind::unpaused, kNoSlot, tick, ""};
+    event.text = why + " for " + std::to_string(duration_us) + " us";
+    event.duration_us = duration_us;
+    requests.push_back(NotifyRequest{std::move(event)});
+}
+
 bool LockstepServer::Match::speaks_for(Slot slot, Slot claimed) {
     if (slot != claimed) {
         counters.violations.add(Violation::wrong_slot);
@@ -152,7 +161,7 @@ bool LockstepServer::Match::speaks_for(Slot slot, Slot claimed) {
 }
 
 void LockstepServer::Match::receive(PeerId from, const Message& message, std::uint64_t now_us) {
-    now_us_ = std::max(now_us_, now_us);
+    pass_time(now_us);
     if (phase == MatchPhase::closing || phase == MatchPhase::ended) {
         on_message_while_closing(from, message);
         return;
@@ -162,8 +171,8 @@ void LockstepServer::Match::receive(PeerId from, const Message& message, std::ui
         return;
     }
     const Slot slot = roster_.slot_of(from);
-    const std::uint64_t violations_before = counters.violations.total();
-    if (slot != kNoSlot && !lines_[slot].conduct.admit(now_us_)) {
+    const std::uint64_t offences_before = counters.violations.offences();
+    if (slot != kNoSlot && !lines_[slot].conduct.messages.take(now_us_)) {
         counters.violations.add(Violation::message_flood);
     } else if (const auto* hello = std::get_if<Hello>(&message)) {
         on_hello(from, *hello);
@@ -172,14 +181,35 @@ void LockstepServer::Match::receive(PeerId from, const Message& message, std::ui
     } else {
         hear(slot, message);
     }
-    check_conduct(slot, violations_before);
+    check_conduct(slot, offences_before);
 }
 
 void LockstepServer::Match::receive_undecodable(PeerId from, std::uint64_t now_us) {
-    now_us_ = std::max(now_us_, now_us);
-    const std::uint64_t violations_before = counters.violations.total();
+    pass_time(now_us);
+    const std::uint64_t offences_before = counters.violations.offences();
     counters.violations.add(Violation::undecodable);
-    check_conduct(roster_.slot_of(from), violations_before);
+    check_conduct(roster_.slot_of(from), offences_before);
+}
+
+/// A driver calls at least every kStatusIntervalUs. Where it did not (the process was stopped, the
+/// machine slept), nobody could be heard and no tick could be played: all clocks stand still for
+/// that long.
+void LockstepServer::Match::pass_time(std::uint64_t now_us) {
+    const std::uint64_t before_us = now_us_;
+    now_us_ = std::max(now_us_, now_us);
+    const std::uint64_t away_us = now_us_ - before_us;
+    if (before_us == 0 || away_us < settings.drop_timeout_ms * kUsPerMs / 2) {
+        return;
+    }
+    roster_.excuse(away_us);
+    gather_deadline_us_ += gather_deadline_us_ == 0 ? 0 : away_us;
+    phase_deadline_us_ += away_us;
+    others_deadline_us_ += away_us;
+    if (phase == MatchPhase::running) {
+        clock_.rebase(away_us);
+        stall_began_us_ += away_us;
+        notify_unpaused(confirmed.newest_tick() + 1, away_us, "the server stood still");
+    }
 }
 
 void LockstepServer::Match::hear(Slot slot, const Message& message) {
@@ -208,7 +238,7 @@ void LockstepServer::Match::dispatch(Slot slot, const Message& message) {
 }
 
 void LockstepServer::Match::update(std::uint64_t now_us) {
-    now_us_ = std::max(now_us_, now_us);
+    pass_time(now_us);
     if (phase == MatchPhase::ended) {
         return;
     }

@@ -29,7 +29,8 @@ void LockstepServer::Match::on_hello(PeerId from, const Hello& hello) {
     switch (admission.kind) {
     case Admission::Kind::refused:
         if (admission.refuse.reason != RefuseReason::match_full &&
-            admission.refuse.reason != RefuseReason::token_in_use) {
+            admission.refuse.reason != RefuseReason::token_in_use &&
+            admission.refuse.reason != RefuseReason::misconduct) {
             counters.violations.add(Violation::bad_hello);
         }
         send(from, admission.refuse);
@@ -145,7 +146,7 @@ void LockstepServer::Match::drop(Slot slot, const std::string& why) {
     const Seat& seat = roster_.at(slot);
     ++counters.drops;
     send(seat.peer, End{EndReason::dropped, confirmed.newest_tick(), seat.attempt, why});
-    vacate(slot, seat.has_played || seat.banned ? SlotState::dropped : SlotState::empty);
+    vacate(slot, seat.has_played ? SlotState::dropped : SlotState::empty);
     notify(SessionEventKind::dropped, slot, confirmed.newest_tick(), why);
 }
 
@@ -198,17 +199,18 @@ ConductSettings LockstepServer::Match::conduct_of(const LockstepServerSettings& 
     return conduct;
 }
 
-/// Who held `slot` when a message of his came has broken a rule where there are more violations
-/// now.
-void LockstepServer::Match::check_conduct(Slot slot, std::uint64_t violations_before) {
-    if (slot == kNoSlot || counters.violations.total() == violations_before) {
+/// Who held `slot` when a message of his came has offended where there are more offences now.
+void LockstepServer::Match::check_conduct(Slot slot, std::uint64_t offences_before) {
+    if (slot == kNoSlot || counters.violations.offences() == offences_before) {
         return;
     }
-    Conduct& conduct = lines_[slot].conduct;
-    conduct.offend();
-    if (!conduct.is_bearable() && roster_.at(slot).connected() && phase <= MatchPhase::settling) {
-        roster_.ban(slot);
-        drop(slot, "broke the protocol " + std::to_string(conduct.offences()) + " times");
+    const bool bearable = lines_[slot].conduct.offences.take(now_us_);
+    if (!bearable && roster_.at(slot).connected() && phase <= MatchPhase::settling) {
+        roster_.ban(roster_.at(slot).token);
+        drop(slot, "broke the protocol again and again");
+        if (roster_.at(slot).state == SlotState::dropped) {
+            roster_.set_state(slot, SlotState::left); // who is banned does not come back to it
+        }
     }
 }
 

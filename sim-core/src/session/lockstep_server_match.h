@@ -88,7 +88,7 @@ private:
     void vacate(Slot slot, SlotState state);
     void check_silence();
     static ConductSettings conduct_of(const LockstepServerSettings& settings);
-    void check_conduct(Slot slot, std::uint64_t violations_before);
+    void check_conduct(Slot slot, std::uint64_t offences_before);
     void gather();
     void start();
 
@@ -128,6 +128,8 @@ private:
     void hear(Slot slot, const Message& message);
     void dispatch(Slot slot, const Message& message);
     void send(PeerId to, Message message);
+    void pass_time(std::uint64_t now_us);
+    void notify_unpaused(Tick tick, std::uint64_t duration_us, const std::string& why);
     void notify(SessionEventKind kind, Slot slot, Tick tick, std::string text);
     void discard_history();
     bool advancing() const { return advanced_tick != confirmed.newest_tick(); }

@@ -142,10 +142,7 @@ void LockstepServer::Match::finish_stall(Tick tick) {
     if (paused_) {
         const std::uint64_t pause_us = now_us_ - clock_.due_us(tick);
         clock_.rebase(pause_us);
-        notify(SessionEventKind::unpaused,
-               kNoSlot,
-               tick,
-               "the clock stood still for " + std::to_string(pause_us) + " us");
+        notify_unpaused(tick, pause_us, "the clock stood still");
     }
     behind_ = !paused_;
     stalled_ = false;

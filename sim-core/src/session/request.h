@@ -49,8 +49,9 @@ std::string_view to_string(RefuseReason reason);
 struct SessionEvent {
     SessionEventKind kind = SessionEventKind::synchronizing;
     Slot slot = kNoSlot;
-    Tick tick = 0;    // the last confirmed tick, unless the kind says otherwise
-    std::string text; // for a person; "" where the kind says all
+    Tick tick = 0;                 // the last confirmed tick, unless the kind says otherwise
+    std::string text;              // for a person; "" where the kind says all
+    std::uint64_t duration_us = 0; // unpaused: how long the clock stood still
 };
 
 /// A slot's hash of `bad_tick` differs from the server's. `agreed_tick` is the last one on which

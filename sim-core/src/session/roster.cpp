@@ -45,11 +45,23 @@ Slot Roster::free_slot() const {
 }
 
 /// Every change of hands costs a snapshot, a message to all and a line of the log.
-Admission
-Roster::seat_unless_too_soon(Slot slot, Admission::Kind kind, std::uint64_t now_us) const {
-    const Seat& seat = seats_[slot];
-    const bool too_soon = seat.since_us != 0 && now_us - seat.since_us < settings_.seat_interval_us;
-    return seat_in(slot, too_soon ? Admission::Kind::too_soon : kind);
+bool Roster::is_fresh(const Seat& seat, std::uint64_t now_us) const {
+    return seat.since_us != 0 && now_us - seat.since_us < settings_.seat_interval_us;
+}
+
+void Roster::ban(std::uint64_t token) {
+    constexpr std::size_t kBannedMax = 256;
+    banned_.push_back(token);
+    if (banned_.size() > kBannedMax) {
+        banned_.pop_front();
+    }
+}
+
+void Roster::excuse(std::uint64_t away_us) {
+    for (Seat& seat : seats_) {
+        seat.heard_us += away_us;
+        seat.since_us += seat.since_us == 0 ? 0 : away_us;
+    }
 }
 
 Admission Roster::admit(PeerId from, const Hello& hello, std::uint64_t now_us) const {
@@ -68,29 +80,31 @@ Admission Roster::admit(PeerId from, const Hello& hello, std::uint64_t now_us) c
     if (hello.token == 0) {
         return refusal(RefuseReason::config, "token", "the token is 0; any other value is valid");
     }
+    if (std::find(banned_.begin(), banned_.end(), hello.token) != banned_.end()) {
+        return refusal(RefuseReason::misconduct,
+                       "token",
+                       "this player broke the protocol again and again and has no place any more");
+    }
     const Slot held = slot_of_token(hello.token);
     if (held == kNoSlot) {
+        const bool had_one = std::any_of(seats_.begin(), seats_.end(), [&](const Seat& seat) {
+            return seat.peer == from && is_fresh(seat, now_us);
+        });
         const Slot slot = slot_of(from) == kNoSlot ? free_slot() : kNoSlot;
         return slot == kNoSlot
                    ? refusal(RefuseReason::match_full,
                              "",
                              "all " + std::to_string(size()) + " slots of the match are taken")
-                   : seat_unless_too_soon(slot, Admission::Kind::seated, now_us);
+                   : seat_in(slot, had_one ? Admission::Kind::too_soon : Admission::Kind::seated);
     }
     const Seat& seat = seats_[held];
-    if (seat.banned) {
-        return refusal(RefuseReason::misconduct,
-                       "token",
-                       "slot " + std::to_string(held) +
-                           " was taken from this player for misconduct");
-    }
-    if (!seat.connected()) {
-        return seat_unless_too_soon(held, Admission::Kind::seated, now_us);
+    const bool is_free = !seat.connected();
+    if (is_free || (seat.peer == from && hello.attempt > seat.attempt)) {
+        const Admission::Kind kind = is_free ? Admission::Kind::seated : Admission::Kind::replaces;
+        return seat_in(held, is_fresh(seat, now_us) ? Admission::Kind::too_soon : kind);
     }
     if (seat.peer == from) {
-        return hello.attempt > seat.attempt
-                   ? seat_unless_too_soon(held, Admission::Kind::replaces, now_us)
-                   : seat_in(held, Admission::Kind::repeated);
+        return seat_in(held, Admission::Kind::repeated);
     }
     if (now_us - seat.heard_us < settings_.interrupted_timeout_us) {
         return refusal(RefuseReason::token_in_use,

@@ -6,6 +6,7 @@
 #include "lockwind/types.h"
 
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,6 @@ struct Seat {
     std::string build_info;
     bool has_played = false;
     bool interrupted = false;
-    bool banned = false; // broke the rules too often: its token gets no seat again
     std::uint64_t heard_us = 0;
     std::uint64_t since_us = 0; // when this peer took the seat
 
@@ -58,7 +58,7 @@ struct Admission {
         repeated = 1, // of the connection that holds the slot already
         replaces = 2, // the slot's holder comes back before he was missed: drop him first
         seated = 3,
-        too_soon = 4, // its slot changed hands a moment ago: it is to ask again
+        too_soon = 4, // it was given a slot a moment ago: it is to ask again
     };
     Kind kind = Kind::refused;
     Slot slot = kNoSlot;
@@ -75,8 +75,10 @@ public:
     /// Seats a player whom admit() has seated.
     void seat(Slot slot, PeerId peer, const Hello& hello, std::uint64_t now_us);
     void set_state(Slot slot, SlotState state);
-    /// The player's token is refused for the rest of the match.
-    void ban(Slot slot) { seats_[slot].banned = true; }
+    /// The token gets no seat any more. Of very many, only the last ones are remembered.
+    void ban(std::uint64_t token);
+    /// Nobody could be heard for so long.
+    void excuse(std::uint64_t away_us);
 
     /// Something arrived; true where the seat was interrupted till now.
     bool hear(Slot slot, std::uint64_t now_us);
@@ -100,10 +102,11 @@ public:
 private:
     Slot slot_of_token(std::uint64_t token) const;
     Slot free_slot() const;
-    Admission seat_unless_too_soon(Slot slot, Admission::Kind kind, std::uint64_t now_us) const;
+    bool is_fresh(const Seat& seat, std::uint64_t now_us) const;
 
     RosterSettings settings_;
     std::vector<Seat> seats_;
+    std::deque<std::uint64_t> banned_;
 };
 
 } // namespace lockwind

@@ -33,6 +33,8 @@ enum class Violation : std::uint8_t {
 inline constexpr std::size_t kViolationCount = 19;
 
 std::string_view to_string(Violation violation);
+/// Whether no link can make an honest player break this rule, however it loses, doubles and delays.
+bool is_offence(Violation violation);
 
 class ViolationCounts {
 public:
@@ -41,6 +43,8 @@ public:
         return counts_[static_cast<std::size_t>(violation)];
     }
     std::uint64_t total() const;
+    /// Of those that are offences.
+    std::uint64_t offences() const;
 
 private:
     std::array<std::uint64_t, kViolationCount> counts_{};

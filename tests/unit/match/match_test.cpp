@@ -210,7 +210,7 @@ TEST(Match, AFullDiskEndsTheMatchAsItStandsInTheLog) {
         ASSERT_TRUE(match.run());
     }
     const LockstepServer& server = match.server().session();
-    EXPECT_TRUE(match.server().log_failed());
+    EXPECT_NE(match.server().log_trouble(), "");
     EXPECT_EQ(server.end_reason(), EndReason::failed);
     EXPECT_NE(server.end_message().find(path), std::string::npos) << server.end_message();
     EXPECT_GT(server.confirmed_tick(), 100U);
@@ -222,6 +222,21 @@ TEST(Match, AFullDiskEndsTheMatchAsItStandsInTheLog) {
     for (std::size_t index = 0; index < 2; ++index) {
         EXPECT_LE(match.bot(index).session().confirmed_tick(), server.confirmed_tick());
     }
+}
+
+TEST(Match, ASummaryThatCannotBeWrittenIsTold) {
+    TemporaryFolder folder;
+    const std::string path = folder.file("match.log");
+    SimulatedMatch match({.ticks = 60}, path);
+    match.add_fighters(2);
+    ASSERT_TRUE(match.run_until([&] { return match.server().session().confirmed_tick() >= 60; }));
+    {
+        const testing::FullDisk full(std::filesystem::file_size(path) + 8);
+        ASSERT_TRUE(match.run());
+    }
+    EXPECT_EQ(match.server().session().end_reason(), EndReason::complete);
+    EXPECT_NE(match.server().log_trouble().find(path), std::string::npos);
+    EXPECT_EQ(verify(path).ended, LogEnd::interrupted);
 }
 
 TEST(Match, AKilledBotComesBackIntoItsSlotAndReachesTheSameState) {

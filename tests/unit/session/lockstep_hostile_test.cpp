@@ -272,11 +272,11 @@ TEST(LockstepHostileServer, ClientsIgnoreWhatNoServerSays) {
 }
 
 TEST_F(LockstepHostile, AFloodOfHellosSeatsAtMostOneAnew) {
-    for (std::uint32_t attempt = 2; attempt < 52; ++attempt) {
+    for (std::uint32_t attempt = 2; attempt < 102; ++attempt) {
         match.inject(peer, Hello{kProtocolVersion, "v1", "", 101, attempt});
     }
     ASSERT_TRUE(match.run_to_end());
-    EXPECT_EQ(counted(Violation::hello_flood), 49U);
+    EXPECT_EQ(counted(Violation::hello_flood), 99U);
     EXPECT_EQ(match.server.session.counters().drops, 1U);
     EXPECT_EQ(match.server.snapshots, 1U);
     EXPECT_EQ(match.server.session.counters().reconnects, 1U); // the honest player's
@@ -291,7 +291,7 @@ protected:
         ASSERT_TRUE(match.run_to_end());
         const LockstepServer& server = match.server.session;
         EXPECT_GE(counted(violation), count_min);
-        EXPECT_EQ(server.slot_status(slot).state, SlotState::dropped);
+        EXPECT_EQ(server.slot_status(slot).state, SlotState::left); // free for others
         EXPECT_EQ(server.counters().drops, 1U);
         EXPECT_EQ(server.counters().reconnects, 0U);
         EXPECT_EQ(server.end_reason(), EndReason::complete);
@@ -299,7 +299,7 @@ protected:
         EXPECT_EQ(match.clients[1]->session.end_reason(), EndReason::failed);
         EXPECT_TRUE(match.clients[1]->session.refused());
         EXPECT_EQ(match.clients[1]->session.end_message(),
-                  "slot " + std::to_string(slot) + " was taken from this player for misconduct");
+                  "this player broke the protocol again and again and has no place any more");
         EXPECT_EQ(match.clients[0]->session.end_reason(), EndReason::complete);
         EXPECT_EQ(match.clients[0]->chain.at(200), match.server.chain.at(200));
     }
@@ -335,6 +335,34 @@ TEST_F(LockstepMisconduct, BytesThatAreNoMessage) {
     }
     match.server.session.receive_undecodable(4711, match.now_us); // who sits nowhere costs nobody
     expect_banned(Violation::undecodable, 66);
+}
+
+TEST(LockstepHostileServer, NobodyKeepsOthersOutOfFreeSlots) {
+    LockstepServer server(VirtualMatch::server_settings(2, 200));
+    std::uint64_t token = 1000;
+    int attacker_welcomes = 0;
+    bool honest_welcome = false;
+    for (std::uint64_t now_us = 1000; now_us < 3'000'000; now_us += 1000) {
+        server.update(now_us);
+        server.receive(6, Hello{kProtocolVersion, "v1", "", token, 1}, now_us);
+        if (now_us % 250'000 == 0) {
+            server.receive(5, Hello{kProtocolVersion, "v1", "", 7, 1}, now_us);
+        }
+        for (const Request& request : server.take_requests()) {
+            const auto* send = std::get_if<SendRequest>(&request);
+            if (send != nullptr && std::holds_alternative<Welcome>(send->message)) {
+                honest_welcome = honest_welcome || send->to == 5;
+                attacker_welcomes += send->to == 6 ? 1 : 0;
+                if (send->to == 6) { // takes a seat, leaves, asks for the next one
+                    server.receive(6, End{EndReason::left, 0, 1, ""}, now_us);
+                    ++token;
+                }
+            }
+        }
+    }
+    EXPECT_TRUE(honest_welcome);
+    EXPECT_GE(attacker_welcomes, 2);
+    EXPECT_LE(attacker_welcomes, 7); // one each 500 ms
 }
 
 TEST_F(LockstepHostile, AskingAgainAndAgainForAWelcomeGivesFewOfThem) {

@@ -171,5 +171,48 @@ TEST(LockstepStall, ASlowClientSlowsTheMatchInsteadOfFallingBehind) {
     match.expect_one_chain();
 }
 
+TEST(LockstepStall, AStoppedServerGoesOnWhereItWas) {
+    VirtualMatch match(VirtualMatch::server_settings(2, 300));
+    match.add_clients(2);
+    ASSERT_TRUE(match.run_to_tick(100));
+    const Tick before = match.server.session.confirmed_tick();
+    // The process is stopped; its players miss it, and ask for their slots again and again.
+    match.server_stopped = true;
+    match.run_for(10'000'000);
+    match.server_stopped = false;
+    const std::uint64_t resumed_us = match.now_us;
+    ASSERT_TRUE(match.run_to_end());
+    EXPECT_EQ(match.server.session.end_reason(), EndReason::complete);
+    // Ticks are played in their time: none of those ten seconds is made up for.
+    EXPECT_GE(match.now_us - resumed_us, (300 - before - 2) * 1'000'000 / 60);
+    ASSERT_NE(match.server.find(SessionEventKind::unpaused), nullptr);
+    EXPECT_GE(match.server.find(SessionEventKind::unpaused)->duration_us, 9'900'000U);
+    for (const auto& client : match.clients) {
+        EXPECT_EQ(client->session.end_reason(), EndReason::complete);
+        // It plays again soon.
+        EXPECT_GE(client->chain.size(), 300U - 20U);
+    }
+    match.expect_one_chain();
+}
+
+TEST(LockstepStall, AnHonestPlayerIsNeverBannedHoweverLateHisMessages) {
+    LockstepServerSettings settings = VirtualMatch::server_settings(2, 4000);
+    settings.config.tick_rate_hz = 240;
+    Conditions conditions;
+    conditions.duplicate_per_mille = 200;
+    VirtualMatch match(settings, conditions);
+    match.add_clients(2);
+    match.network.extra_latency_us[match.clients[1]->peer] = 300'000;
+    match.network.conditions.jitter_us = 600'000; // 144 ticks: more than the window
+    ASSERT_TRUE(match.run_to_end());
+    EXPECT_EQ(match.server.session.end_reason(), EndReason::complete);
+    const ViolationCounts& violations = match.server.session.counters().violations;
+    EXPECT_GT(violations.of(Violation::input_too_old), 64U);
+    EXPECT_EQ(violations.offences(), 0U);
+    for (const auto& client : match.clients) {
+        EXPECT_FALSE(client->session.refused()) << client->session.end_message();
+    }
+}
+
 } // namespace
 } // namespace lockwind::testing

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <gtest/gtest.h>
 #include <map>
@@ -417,7 +418,9 @@ public:
         int passes_at_this_time = 0;
         while (true) {
             deliver();
-            server.pass(now_us);
+            if (!server_stopped) {
+                server.pass(now_us);
+            }
             for (const auto& client : clients) {
                 if (client->alive) {
                     client->pass(now_us);
@@ -477,11 +480,17 @@ public:
     ServerDriver server;
     std::vector<std::unique_ptr<ClientDriver>> clients;
     std::uint64_t now_us = 1'000'000;
+    bool server_stopped = false; // what arrives meanwhile waits in its sockets
 
 private:
     void deliver() {
+        for (; !server_stopped && !unheard_.empty(); unheard_.pop_front()) {
+            server.session.receive(unheard_.front().from, unheard_.front().message, now_us);
+        }
         while (const auto packet = network.receive(now_us)) {
-            if (packet->to == kServerPeer) {
+            if (packet->to == kServerPeer && server_stopped) {
+                unheard_.push_back(*packet);
+            } else if (packet->to == kServerPeer) {
                 server.session.receive(packet->from, packet->message, now_us);
             }
             for (const auto& client : clients) {
@@ -494,7 +503,10 @@ private:
     }
 
     std::uint64_t next_time_us() const {
-        std::uint64_t next = std::min(network.next_arrival_us(), server.session.next_deadline_us());
+        std::uint64_t next = network.next_arrival_us();
+        if (!server_stopped) {
+            next = std::min(next, server.session.next_deadline_us());
+        }
         for (const auto& client : clients) {
             if (client->alive) {
                 next = std::min(next, client->session.next_deadline_us());
@@ -504,6 +516,7 @@ private:
     }
 
     PeerId next_peer_ = 11;
+    std::deque<VirtualNetwork::Packet> unheard_;
 };
 
 } // namespace lockwind::testing
