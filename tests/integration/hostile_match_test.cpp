@@ -232,7 +232,7 @@ TEST_F(HostileMatch, DropsAPlayerWhoBreaksTheRulesAndPlaysOn) {
     expect_honest_end(1);
     EXPECT_GT(counted(Violation::wrong_slot), 64U);
     EXPECT_EQ(server_->session().counters().drops, 1U);
-    EXPECT_EQ(server_->session().slot_status(slot).state, SlotState::dropped);
+    EXPECT_EQ(server_->session().slot_status(slot).state, SlotState::left);
     EXPECT_TRUE(seats_[1].bot->session().refused());
 }
 
