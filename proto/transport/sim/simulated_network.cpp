@@ -22,6 +22,7 @@ struct SimulatedNetwork::Link {
     LinkModel model;
     std::vector<std::vector<std::byte>> backlog; // reliable packets that wait for the link
     std::size_t backlog_size_bytes = 0;
+    std::uint64_t newest_arrival_us = 0; // of all packets so far
 };
 
 class SimulatedNetwork::Endpoint final : public Transport {
@@ -119,14 +120,20 @@ void SimulatedNetwork::set_conditions(std::uint32_t from,
 }
 
 void SimulatedNetwork::set_link_up(std::uint32_t client, bool up) {
-    const auto since = cut_since_us_.find(client);
+    const bool lost = !matched(client); // asked before the first direction changes it
+    set_up({kServerAddress, client}, up, lost);
+    set_up({client, kServerAddress}, up, lost);
+}
+
+void SimulatedNetwork::set_direction_up(std::uint32_t from, std::uint32_t to, bool up) {
+    set_up({from, to}, up, !matched(std::max(from, to)));
+}
+
+void SimulatedNetwork::set_up(LinkKey key, bool up, bool lost) {
     if (!up) {
-        cut_since_us_.emplace(client, clock_.now_us());
-    } else if (since != cut_since_us_.end()) {
-        const bool lost = !matched(client);
-        cut_since_us_.erase(since);
-        heal({kServerAddress, client}, lost);
-        heal({client, kServerAddress}, lost);
+        cut_since_us_.emplace(key, clock_.now_us());
+    } else if (cut_since_us_.erase(key) > 0) {
+        heal(key, lost);
     }
 }
 
@@ -134,10 +141,12 @@ void SimulatedNetwork::heal(LinkKey key, bool lost) {
     Link& healed = link(key);
     const std::vector<std::vector<std::byte>> backlog = std::exchange(healed.backlog, {});
     healed.backlog_size_bytes = 0;
+    if (lost) {
+        stats_.lost += backlog.size();
+        return;
+    }
     for (const std::vector<std::byte>& bytes : backlog) {
-        if (!lost) {
-            transmit(key, Channel::reliable, bytes);
-        }
+        transmit(key, Channel::reliable, bytes);
     }
 }
 
@@ -161,12 +170,15 @@ SimulatedNetwork::Link& SimulatedNetwork::link(LinkKey key) {
 }
 
 bool SimulatedNetwork::cut(LinkKey key) const {
-    return cut_since_us_.count(std::max(key.first, key.second)) > 0; // the server is 0
+    return cut_since_us_.count(key) > 0;
 }
 
 bool SimulatedNetwork::matched(std::uint32_t client) const {
-    const auto since = cut_since_us_.find(client);
-    return since == cut_since_us_.end() || clock_.now_us() - since->second < kLeaseUs;
+    const auto lost = [this](LinkKey key) {
+        const auto since = cut_since_us_.find(key);
+        return since != cut_since_us_.end() && clock_.now_us() - since->second >= kLeaseUs;
+    };
+    return !lost({kServerAddress, client}) && !lost({client, kServerAddress});
 }
 
 SendResult SimulatedNetwork::send(std::uint32_t from,
@@ -196,18 +208,25 @@ SendResult SimulatedNetwork::send(std::uint32_t from,
             Link& waiting = link(key);
             waiting.backlog.emplace_back(bytes.begin(), bytes.end());
             waiting.backlog_size_bytes += bytes.size();
+        } else {
+            ++stats_.lost;
         }
     }
     return SendResult::sent;
 }
 
 void SimulatedNetwork::transmit(LinkKey key, Channel channel, std::span<const std::byte> bytes) {
-    const Arrivals arrivals = link(key).model.schedule(clock_.now_us(), channel, bytes.size());
+    Link& used = link(key);
+    const Arrivals arrivals = used.model.schedule(clock_.now_us(), channel, bytes.size());
     const auto receiver = endpoints_.find(key.second);
     if (receiver == endpoints_.end()) {
         return;
     }
+    stats_.lost += arrivals.count == 0 ? 1 : 0;
+    stats_.duplicated += arrivals.count > 1 ? 1 : 0;
     for (const std::uint64_t at_us : arrivals.times()) {
+        stats_.reordered += at_us < used.newest_arrival_us ? 1 : 0;
+        used.newest_arrival_us = std::max(used.newest_arrival_us, at_us);
         Packet packet{key.first, channel, {bytes.begin(), bytes.end()}};
         receiver->second->arrive(at_us, ++sequence_, std::move(packet));
     }

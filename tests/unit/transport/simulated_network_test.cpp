@@ -231,5 +231,59 @@ TEST(SimulatedNetwork, CarriesTheLastWordsOfAnEndpoint) {
     EXPECT_EQ(run_dry(network, clock, *server), Texts{"10000 1:bye!"});
 }
 
+TEST(SimulatedNetwork, CutsOneDirectionAndLeavesTheOther) {
+    VirtualClock clock;
+    SimulatedNetwork network(clock, 1);
+    const auto server = network.open(kServerAddress);
+    const auto client = network.open(1);
+    network.set_direction_up(1, kServerAddress, false);
+    (void)client->send(0, Channel::best_effort, bytes_of("lost"));
+    (void)client->send(0, Channel::reliable, bytes_of("kept"));
+    (void)server->send(1, Channel::best_effort, bytes_of("heard"));
+    EXPECT_EQ(received(*server), Texts{});
+    EXPECT_EQ(received(*client), Texts{"0:heard"});
+    network.set_direction_up(1, kServerAddress, true);
+    EXPECT_EQ(received(*server), Texts{"1:kept!"});
+
+    network.set_direction_up(kServerAddress, 1, false);
+    (void)server->send(1, Channel::reliable, bytes_of("waits too long"));
+    clock.advance_by(SimulatedNetwork::kLeaseUs);
+    EXPECT_EQ(client->peer_count(), 0U);
+    EXPECT_EQ(server->peer_count(), 0U);
+    network.set_direction_up(kServerAddress, 1, true);
+    EXPECT_EQ(client->peer_count(), 1U);
+    EXPECT_EQ(received(*client), Texts{});
+}
+
+TEST(SimulatedNetwork, CountsWhatItDoesToPackets) {
+    VirtualClock clock;
+    LinkConditions conditions = delay(10'000);
+    SimulatedNetwork network(clock, 1, conditions);
+    const auto server = network.open(kServerAddress);
+    const auto client = network.open(1);
+    (void)client->send(0, Channel::best_effort, bytes_of("on time"));
+    EXPECT_EQ(network.stats(), NetworkStats{});
+
+    conditions.duplicate_ppm = kPartsPerMillion;
+    network.set_conditions(1, kServerAddress, conditions);
+    (void)client->send(0, Channel::best_effort, bytes_of("twice"));
+    EXPECT_EQ(network.stats(), (NetworkStats{0, 1, 0}));
+
+    network.set_conditions(1, kServerAddress, delay(5'000));
+    (void)client->send(0, Channel::best_effort, bytes_of("overtakes"));
+    EXPECT_EQ(network.stats(), (NetworkStats{0, 1, 1}));
+
+    conditions.loss_ppm = kPartsPerMillion;
+    network.set_conditions(1, kServerAddress, conditions);
+    (void)client->send(0, Channel::best_effort, bytes_of("lost"));
+    network.set_link_up(1, false);
+    (void)client->send(0, Channel::best_effort, bytes_of("cut off"));
+    (void)client->send(0, Channel::reliable, bytes_of("waits"));
+    EXPECT_EQ(network.stats(), (NetworkStats{2, 1, 1}));
+    clock.advance_by(SimulatedNetwork::kLeaseUs);
+    network.set_link_up(1, true);
+    EXPECT_EQ(network.stats(), (NetworkStats{3, 1, 1}));
+}
+
 } // namespace
 } // namespace lockwind
