@@ -151,6 +151,14 @@ void local_b_of(const Boxes& boxes, const std::int32_t local_a[3], std::int32_t 
     inverse_rotate(boxes.cosines, from_b, local_b);
 }
 
+/// B's local point in A's frame.
+void local_a_of(const Boxes& boxes, const std::int32_t local_b[3], std::int32_t local_a[3]) {
+    rotate(boxes.cosines, local_b, local_a);
+    for (int component = 0; component < 3; ++component) {
+        local_a[component] += boxes.centre[component];
+    }
+}
+
 void emit_face(const Boxes& boxes,
                std::uint32_t axis,
                const FaceContact& face,
@@ -177,10 +185,7 @@ void emit_face(const Boxes& boxes,
         if (on_a) {
             local_b_of(boxes, point.local_a, point.local_b);
         } else {
-            rotate(boxes.cosines, point.local_b, point.local_a);
-            for (int component = 0; component < 3; ++component) {
-                point.local_a[component] += boxes.centre[component];
-            }
+            local_a_of(boxes, point.local_b, point.local_a);
         }
         point.feature =
             face.feature << 6U | static_cast<std::uint32_t>(from.edge_in) << 3U | from.edge_out;
@@ -340,8 +345,45 @@ EdgeAxes test_edges(const Boxes& boxes, std::int64_t threshold) {
     return result;
 }
 
+/// Moves a point to the nearest one of the box that is centred in its frame. False where it is in
+/// the box already.
+bool move_into(const ShapeInstance& box, std::int32_t point[3]) {
+    bool moved = false;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::int32_t inside = clamped(point[axis], -box.size[axis], box.size[axis]);
+        moved = moved || inside != point[axis];
+        point[axis] = inside;
+    }
+    return moved;
+}
+
+/// Moves a point of the incident box (in its frame) towards where the boxes overlap, by nearest
+/// points on one and the other in turn (von Neumann's alternating projections).
+void move_to_overlap(const Boxes& boxes, bool incident_is_b, std::int32_t point[3]) {
+    constexpr int kRounds = 8; // two or three do where this is needed
+    for (int round = 0; round < kRounds; ++round) {
+        std::int32_t seen[3]; // from the reference box
+        if (incident_is_b) {
+            local_a_of(boxes, point, seen);
+        } else {
+            local_b_of(boxes, point, seen);
+        }
+        if (!move_into(incident_is_b ? boxes.a : boxes.b, seen)) {
+            return;
+        }
+        if (incident_is_b) {
+            local_b_of(boxes, seen, point);
+        } else {
+            local_a_of(boxes, seen, point);
+        }
+        move_into(incident_is_b ? boxes.b : boxes.a, point);
+    }
+}
+
 /// Overlapping boxes of which neither faces nor edges gave a point (rounding between nearly equal
-/// axes): the other box's deepest corner below the face is the contact.
+/// axes): the other box's deepest corner below the face is the contact. Where an edge lies nearly
+/// flat on the face its deepest corner may stand far beside the face: the contact is then where
+/// that edge meets the box.
 void emit_deep_corner(const Boxes& boxes,
                       std::uint32_t axis,
                       std::int64_t separation,
@@ -357,6 +399,7 @@ void emit_deep_corner(const Boxes& boxes,
         const std::int32_t half = (on_a ? boxes.b : boxes.a).size[axis_other];
         corner[axis_other] = (cosine > 0) == positive ? -half : half;
     }
+    move_to_overlap(boxes, on_a, corner);
     axis_of(reference, w, out.normal);
     if (on_a != positive) {
         for (std::int32_t& component : out.normal) {
@@ -368,19 +411,13 @@ void emit_deep_corner(const Boxes& boxes,
     const std::int32_t way = between.from_first(point.separation);
     const std::int32_t lift = positive ? -way : way;
     if (on_a) {
-        rotate(boxes.cosines, corner, point.local_a);
-        for (int component = 0; component < 3; ++component) {
-            point.local_a[component] += boxes.centre[component];
-        }
+        local_a_of(boxes, corner, point.local_a);
         point.local_a[w] += lift;
         local_b_of(boxes, point.local_a, point.local_b);
     } else {
         local_b_of(boxes, corner, point.local_b);
         point.local_b[w] += lift;
-        rotate(boxes.cosines, point.local_b, point.local_a);
-        for (int component = 0; component < 3; ++component) {
-            point.local_a[component] += boxes.centre[component];
-        }
+        local_a_of(boxes, point.local_b, point.local_a);
     }
     point.feature = kDeepCornerFeature | axis;
     out.point_count = 1;

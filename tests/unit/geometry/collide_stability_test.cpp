@@ -1,6 +1,8 @@
 #include "geometry/collide.h"
 #include "reference.h"
 
+#include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <set>
 #include <vector>
@@ -269,6 +271,49 @@ TEST(CollideStability, LargeShapesAtEveryDeltaStayInRange) {
         }
     }
     EXPECT_GT(touching, 2000);
+}
+
+// As a match had them: an edge of A, nearly flat on a face of B, overlaps it by a hair at its upper
+// end; its lower corner is as deep, but 80 cm below B.
+TEST(CollideStability, AnEdgeThatMeetsOnlyTheEndOfAFaceTouchesThere) {
+    Body a = Body::box(0.4, 0.4, 0.4);
+    Body b = Body::box(0.5, 0.4, 0.7);
+    const std::int32_t rotation_a[9] = {17136695,
+                                        -948679,
+                                        1073604647,
+                                        54139666,
+                                        1072376051,
+                                        83426,
+                                        -1072239122,
+                                        54131418,
+                                        17162731};
+    const std::int32_t rotation_b[9] = {991793338,
+                                        11127315,
+                                        411270789,
+                                        7403854,
+                                        1072692501,
+                                        -46877339,
+                                        -411354667,
+                                        46135505,
+                                        990747373};
+    std::copy_n(rotation_a, 9, a.rotation);
+    std::copy_n(rotation_b, 9, b.rotation);
+    const std::int32_t delta[3] = {-2350016, 3571238, -4425288};
+    for (const bool swapped : {false, true}) {
+        const Body& first = swapped ? b : a;
+        const Body& second = swapped ? a : b;
+        const std::int32_t sign = swapped ? -1 : 1;
+        const std::int32_t from_first[3] = {sign * delta[0], sign * delta[1], sign * delta[2]};
+        ManifoldGeometry manifold;
+        collide(first.instance(), second.instance(), from_first, {}, manifold);
+        ASSERT_EQ(manifold.point_count, 1U);
+        const ManifoldPoint& point = manifold.points[0];
+        const Vec on_first = first.to_world(reference::metres(point.local_a));
+        const Vec on_second = second.to_world(reference::metres(point.local_b));
+        EXPECT_LT(std::abs(first.distance(on_first)), 0.005) << swapped;
+        EXPECT_LT(std::abs(second.distance(on_second)), 0.005) << swapped;
+        EXPECT_LT(reference::length(on_first - on_second - reference::metres(from_first)), 1e-5);
+    }
 }
 
 } // namespace
