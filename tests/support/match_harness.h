@@ -3,39 +3,18 @@
 #include "bot/bot.h"
 #include "match/match_server.h"
 #include "scene/scene.h"
+#include "tests/support/temporary_folder.h"
 #include "transport/sim/simulated_network.h"
 #include "transport/sim/virtual_clock.h"
 
 #include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <gtest/gtest.h>
 #include <memory>
-#include <stdlib.h>
 #include <string>
 #include <vector>
 
 namespace lockwind::testing {
-
-/// A folder of its own, gone with the object.
-class TemporaryFolder {
-public:
-    TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "lockwind-XXXXXX").string();
-        EXPECT_NE(mkdtemp(name.data()), nullptr);
-        path_ = name;
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    std::string file(std::string_view name) const { return (path_ / name).string(); }
-
-private:
-    std::filesystem::path path_;
-};
 
 /// The shipped server and bots in one process, over a simulated network in virtual time.
 class SimulatedMatch {
