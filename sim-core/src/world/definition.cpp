@@ -29,7 +29,11 @@ bool outside(const Vec3& position, Real bounds) {
 
 Status check_settings(const WorldSettings& settings) {
     const Range ranges[] = {
-        {"tick_rate_hz", settings.tick_rate_hz, kWorldTickRateHzMin, kWorldTickRateHzMax, "10 .. 240"},
+        {"tick_rate_hz",
+         settings.tick_rate_hz,
+         kWorldTickRateHzMin,
+         kWorldTickRateHzMax,
+         "10 .. 240"},
         {"substeps", settings.substeps, 1, kSubstepsMax, "1 .. 16"},
         {"gravity.x", settings.gravity.x, -kGravityMax, kGravityMax, "-1000 .. 1000 m/s^2"},
         {"gravity.y", settings.gravity.y, -kGravityMax, kGravityMax, "-1000 .. 1000 m/s^2"},
