@@ -134,23 +134,26 @@ private:
         return pairs;
     }
 
+    /// The only row that one side lacks; nullptr where it lacks none or several.
+    static RowPair* only_one_without(const std::byte* RowPair::*side, std::vector<RowPair>& pairs) {
+        RowPair* found = nullptr;
+        for (RowPair& pair : pairs) {
+            if (pair.*side != nullptr) {
+                continue;
+            }
+            if (found != nullptr) {
+                return nullptr;
+            }
+            found = &pair;
+        }
+        return found;
+    }
+
     /// What names such a row is made of its own fields: where each side has one row without a
     /// partner, in the same place, they are one row in which such a field differs.
     void join_strays(std::size_t section, std::vector<RowPair>& pairs) const {
-        const auto stray_of = [&pairs](const std::byte* RowPair::*side) -> RowPair* {
-            RowPair* stray = nullptr;
-            for (RowPair& pair : pairs) {
-                if (pair.*side == nullptr) {
-                    if (stray != nullptr) {
-                        return nullptr; // more than one
-                    }
-                    stray = &pair;
-                }
-            }
-            return stray;
-        };
-        RowPair* const of_a = stray_of(&RowPair::b);
-        RowPair* const of_b = stray_of(&RowPair::a);
+        RowPair* const of_a = only_one_without(&RowPair::b, pairs);
+        RowPair* const of_b = only_one_without(&RowPair::a, pairs);
         if (of_a != nullptr && of_b != nullptr &&
             of_a->a - row_a(section, 0) == of_b->b - row_b(section, 0)) {
             of_a->b = of_b->b;
