@@ -13,8 +13,9 @@ namespace lockwind::testing {
 /// A folder of its own, gone with the object.
 class TemporaryFolder {
 public:
-    TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "lockwind-XXXXXX").string();
+    explicit TemporaryFolder(
+        const std::filesystem::path& parent = std::filesystem::temp_directory_path()) {
+        std::string name = (parent / "lockwind-XXXXXX").string();
         const char* made = mkdtemp(name.data());
         LOCKWIND_ASSERT(made != nullptr);
         path_ = name;
