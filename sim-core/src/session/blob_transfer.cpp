@@ -22,12 +22,13 @@ std::uint32_t chunk_count(std::size_t size_bytes) {
     return static_cast<std::uint32_t>(std::max<std::size_t>(full, 1));
 }
 
-void BlobSender::start(BlobKind kind, std::vector<std::byte> bytes) {
+void BlobSender::start(BlobKind kind, std::uint32_t transfer, std::vector<std::byte> bytes) {
     LOCKWIND_ASSERT(bytes.size() <= kBlobSizeBytesMax);
+    LOCKWIND_ASSERT(transfer > transfer_);
     kind_ = kind;
     count_ = chunk_count(bytes.size());
     bytes_ = std::move(bytes);
-    ++transfer_;
+    transfer_ = transfer;
     base_ = 0;
     window_ = {};
     active_ = true;

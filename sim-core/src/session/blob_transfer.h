@@ -19,8 +19,9 @@ inline constexpr std::uint64_t kChunkResendUs = 250'000;
 class BlobSender {
 public:
     /// Begins a transfer in place of the one before, finished or not. At most kBlobSizeBytesMax
-    /// bytes.
-    void start(BlobKind kind, std::vector<std::byte> bytes);
+    /// bytes. `transfer` is its number, above those of all transfers that went to this receiver
+    /// before, from whichever sender: it tells a new blob from a repeated chunk of an old one.
+    void start(BlobKind kind, std::uint32_t transfer, std::vector<std::byte> bytes);
     void cancel();
 
     /// Appends the chunks that are due.

@@ -249,7 +249,7 @@ void LockstepClient::Player::on_desync_query(const DesyncQuery& query) {
 
 void LockstepClient::Player::send_blob(BlobKind kind, std::vector<std::byte> bytes) {
     if (phase == ClientPhase::playing) {
-        blob_.start(kind, std::move(bytes));
+        blob_.start(kind, blob_.transfer() + 1, std::move(bytes));
     }
 }
 

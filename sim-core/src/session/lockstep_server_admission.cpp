@@ -62,6 +62,7 @@ void LockstepServer::Match::seat(Slot slot, PeerId from, const Hello& hello) {
     }
     roster_.seat(slot, from, hello, now_us_);
     line.inputs.reset();
+    line.report = BlobReceiver();
     line.confirmed_tick = tick;
     line.hash_tick = tick;
     line.resume_tick = tick;
@@ -88,7 +89,7 @@ void LockstepServer::Match::snapshot_saved(Slot slot,
         return; // the player has gone, or come again, meanwhile
     }
     line.resume_hash = hash;
-    line.snapshot.start(BlobKind::snapshot, std::move(bytes));
+    line.snapshot.start(BlobKind::snapshot, ++snapshots_, std::move(bytes));
     welcome(slot, line.snapshot.transfer());
 }
 
@@ -155,18 +156,18 @@ void LockstepServer::Match::leave(Slot slot, const End& end_of_client) {
     notify(SessionEventKind::left, slot, confirmed.newest_tick(), end_of_client.message);
 }
 
+/// Tells a peer without a seat that it has none any more: else it might wait for ever.
 void LockstepServer::Match::rebuke(PeerId from) {
-    const Slot slot = roster_.former_slot_of(from);
-    if (slot == kNoSlot) {
+    FormerPeer* former = roster_.former(from);
+    if (former == nullptr) {
         counters.violations.add(Violation::unknown_peer);
-        return;
-    }
-    const Seat& seat = roster_.at(slot);
-    if (seat.state != SlotState::left && now_us_ >= lines_[slot].rebuke_us) {
-        lines_[slot].rebuke_us = now_us_ + kRebukeIntervalUs;
-        send(
-            from,
-            End{EndReason::dropped, confirmed.newest_tick(), seat.attempt, "the slot was dropped"});
+    } else if (!former->left && now_us_ >= former->told_us + kRebukeIntervalUs) {
+        former->told_us = now_us_;
+        send(from,
+             End{EndReason::dropped,
+                 confirmed.newest_tick(),
+                 former->attempt,
+                 "the slot was dropped"});
     }
 }
 

@@ -64,7 +64,6 @@ private:
         std::uint64_t echo_arrived_us = 0;
         Tick piece_tick = 0; // confirmed_tick when the last catch-up piece was sent
         std::uint64_t piece_us = 0;
-        std::uint64_t rebuke_us = 0; // when this former holder is next told that it was dropped
         BlobSender snapshot;
         BlobReceiver report;
         Conduct conduct; // of the slot's player, through all his connections
@@ -141,6 +140,7 @@ private:
     std::vector<Line> lines_;
     TickClock clock_;
     HashLedger ledger_;
+    std::uint32_t snapshots_ = 0; // transfers begun, whatever the slot: a player may change his
     std::uint64_t status_us_ = 0; // when clients are next sent something, ticks or not
 
     /// What a tick that is taken back leaves.

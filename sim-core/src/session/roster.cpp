@@ -19,6 +19,16 @@ Admission seat_in(Slot slot, Admission::Kind kind) {
     return admission;
 }
 
+/// Adds `item`, and forgets the oldest ones beyond a bound.
+template <class T>
+void remember(std::deque<T>& items, const T& item) {
+    constexpr std::size_t kRememberedMax = 256;
+    items.push_back(item);
+    if (items.size() > kRememberedMax) {
+        items.pop_front();
+    }
+}
+
 } // namespace
 
 Roster::Roster(const RosterSettings& settings) : settings_(settings), seats_(settings.slots) {}
@@ -50,11 +60,7 @@ bool Roster::is_fresh(const Seat& seat, std::uint64_t now_us) const {
 }
 
 void Roster::ban(std::uint64_t token) {
-    constexpr std::size_t kBannedMax = 256;
-    banned_.push_back(token);
-    if (banned_.size() > kBannedMax) {
-        banned_.pop_front();
-    }
+    remember(banned_, token);
 }
 
 void Roster::excuse(std::uint64_t away_us) {
@@ -117,6 +123,7 @@ Admission Roster::admit(PeerId from, const Hello& hello, std::uint64_t now_us) c
 void Roster::seat(Slot slot, PeerId peer, const Hello& hello, std::uint64_t now_us) {
     Seat& seat = seats_[slot];
     const bool same_player = seat.token == hello.token;
+    std::erase_if(former_, [peer](const FormerPeer& past) { return past.peer == peer; });
     seat.has_played = seat.has_played && same_player;
     seat.state = SlotState::joining;
     seat.peer = peer;
@@ -129,8 +136,13 @@ void Roster::seat(Slot slot, PeerId peer, const Hello& hello, std::uint64_t now_
 }
 
 void Roster::set_state(Slot slot, SlotState state) {
-    seats_[slot].state = state;
-    seats_[slot].has_played = seats_[slot].has_played || state == SlotState::playing;
+    Seat& seat = seats_[slot];
+    const bool was_connected = seat.connected();
+    seat.state = state;
+    seat.has_played = seat.has_played || state == SlotState::playing;
+    if (was_connected && !seat.connected()) {
+        remember(former_, FormerPeer{seat.peer, seat.attempt, state == SlotState::left, 0});
+    }
 }
 
 bool Roster::hear(Slot slot, std::uint64_t now_us) {
@@ -186,13 +198,11 @@ Slot Roster::slot_of(PeerId peer) const {
     return kNoSlot;
 }
 
-Slot Roster::former_slot_of(PeerId peer) const {
-    for (Slot slot = 0; slot < size(); ++slot) {
-        if (!seats_[slot].connected() && seats_[slot].peer == peer) {
-            return slot;
-        }
-    }
-    return kNoSlot;
+FormerPeer* Roster::former(PeerId peer) {
+    const auto found = std::find_if(former_.begin(), former_.end(), [peer](const FormerPeer& past) {
+        return past.peer == peer;
+    });
+    return found == former_.end() ? nullptr : &*found;
 }
 
 std::uint32_t Roster::count(SlotState state) const {

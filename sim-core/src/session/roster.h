@@ -65,6 +65,14 @@ struct Admission {
     Refuse refuse;
 };
 
+/// A peer that sat in a slot once, and is to hear so if it still talks.
+struct FormerPeer {
+    PeerId peer = kAllPeers;
+    std::uint32_t attempt = 0; // the Hello's of the connection that is over
+    bool left = false;         // by itself: it knows
+    std::uint64_t told_us = 0;
+};
+
 /// The seats of a match: who may sit where, and who has fallen silent. Decides, but sends nothing.
 class Roster {
 public:
@@ -91,8 +99,9 @@ public:
 
     /// The connected seat of a peer; kNoSlot where there is none.
     Slot slot_of(PeerId peer) const;
-    /// A seat that this peer held last, before it was dropped or left; kNoSlot where there is none.
-    Slot former_slot_of(PeerId peer) const;
+    /// Of a peer whose seat was taken from it or left, whoever has it now; nullptr where there is
+    /// none. Of very many, only the last ones are remembered.
+    FormerPeer* former(PeerId peer);
 
     const Seat& at(Slot slot) const { return seats_[slot]; }
     Slot size() const { return static_cast<Slot>(seats_.size()); }
@@ -107,6 +116,7 @@ private:
     RosterSettings settings_;
     std::vector<Seat> seats_;
     std::deque<std::uint64_t> banned_;
+    std::deque<FormerPeer> former_;
 };
 
 } // namespace lockwind

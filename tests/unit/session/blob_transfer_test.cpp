@@ -20,7 +20,7 @@ std::vector<Chunk> poll(BlobSender& sender, std::uint64_t now_us) {
 
 TEST(BlobTransfer, KeepsAWindowOfTwoInFlight) {
     BlobSender sender;
-    sender.start(BlobKind::snapshot, blob_of(5 * kChunkSizeBytesMax, 1));
+    sender.start(BlobKind::snapshot, sender.transfer() + 1, blob_of(5 * kChunkSizeBytesMax, 1));
     EXPECT_EQ(sender.next_deadline_us(), 0U);
     const std::vector<Chunk> first = poll(sender, 10);
     ASSERT_EQ(first.size(), 2U);
@@ -40,7 +40,7 @@ TEST(BlobTransfer, KeepsAWindowOfTwoInFlight) {
 
 TEST(BlobTransfer, RepeatsWhatIsNotAcknowledged) {
     BlobSender sender;
-    sender.start(BlobKind::snapshot, blob_of(2 * kChunkSizeBytesMax, 1));
+    sender.start(BlobKind::snapshot, sender.transfer() + 1, blob_of(2 * kChunkSizeBytesMax, 1));
     EXPECT_EQ(poll(sender, 10).size(), 2U);
     sender.receive(ChunkAck{sender.transfer(), 0});
     EXPECT_TRUE(poll(sender, 9 + kChunkResendUs).empty());
@@ -66,7 +66,7 @@ TEST(BlobTransfer, ArrivesWholeUnderLossDuplicationAndReordering) {
             const std::vector<std::byte> bytes = blob_of(size, seed);
             BlobSender sender;
             BlobReceiver receiver;
-            sender.start(BlobKind::desync_report, bytes);
+            sender.start(BlobKind::desync_report, sender.transfer() + 1, bytes);
             receiver.expect(BlobKind::desync_report, size);
             std::vector<Chunk> under_way;
             std::optional<Blob> arrived;
@@ -104,7 +104,7 @@ TEST(BlobTransfer, ArrivesWholeUnderLossDuplicationAndReordering) {
 
 TEST(BlobTransfer, TakesNothingThatWasNotAskedFor) {
     BlobSender sender;
-    sender.start(BlobKind::snapshot, blob_of(100, 1));
+    sender.start(BlobKind::snapshot, sender.transfer() + 1, blob_of(100, 1));
     const Chunk chunk = poll(sender, 1).at(0);
     BlobReceiver receiver;
     EXPECT_EQ(receiver.receive(chunk).violation, Violation::chunk_unsolicited);
@@ -195,11 +195,11 @@ TEST(BlobTransfer, ANewTransferReplacesTheOldOneWhoseChunksAreIgnored) {
     BlobSender sender;
     BlobReceiver receiver;
     receiver.expect(BlobKind::snapshot, kBlobSizeBytesMax);
-    sender.start(BlobKind::snapshot, blob_of(3 * kChunkSizeBytesMax, 1));
+    sender.start(BlobKind::snapshot, sender.transfer() + 1, blob_of(3 * kChunkSizeBytesMax, 1));
     const std::vector<Chunk> old = poll(sender, 1);
     receiver.receive(old[0]);
     const std::vector<std::byte> bytes = blob_of(50, 2);
-    sender.start(BlobKind::snapshot, bytes);
+    sender.start(BlobKind::snapshot, sender.transfer() + 1, bytes);
     receiver.expect(BlobKind::snapshot, kBlobSizeBytesMax, sender.transfer());
     const BlobReceiver::Outcome stale = receiver.receive(old[1]);
     EXPECT_FALSE(stale.ack.has_value());

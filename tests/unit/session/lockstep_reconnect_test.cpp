@@ -253,6 +253,28 @@ TEST(LockstepReconnect, AJoinerMayComeInTheMiddle) {
     match.expect_one_chain();
 }
 
+TEST(LockstepReconnect, AJoinerWhoWasCutOffGetsAnotherSlotAndItsSnapshot) {
+    LockstepServerSettings settings = VirtualMatch::server_settings(3, 900);
+    settings.join_timeout_ms = 1000;
+    VirtualMatch match(settings);
+    match.add_client(1);
+    ASSERT_TRUE(match.run_to_tick(100));
+    ClientDriver& unlucky = match.add_client(2);
+    ASSERT_TRUE(match.run([&] { return match.server.count(SessionEventKind::synchronized) == 2; }));
+    ASSERT_EQ(unlucky.session.slot(), 1U);
+    match.network.cut.insert(unlucky.peer);
+    ASSERT_TRUE(match.run([&] { return match.server.count(SessionEventKind::dropped) == 1; }));
+    ClientDriver& other = match.add_client(3);
+    ASSERT_TRUE(match.run([&] { return other.session.phase() == ClientPhase::playing; }));
+    match.network.cut.clear();
+    ASSERT_TRUE(match.run_to_end());
+    EXPECT_EQ(match.server.snapshots, 3U);
+    EXPECT_EQ(other.session.slot(), 1U); // who never played has no claim to it
+    EXPECT_EQ(unlucky.session.slot(), 2U);
+    EXPECT_EQ(unlucky.session.advanced_tick(), 900U);
+    match.expect_one_chain();
+}
+
 TEST(LockstepReconnect, AnotherWorldIsRefusedNamingItsHash) {
     VirtualMatch match(VirtualMatch::server_settings(2, 60));
     match.add_client(1);
