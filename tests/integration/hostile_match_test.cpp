@@ -38,8 +38,9 @@ protected:
         settings.config.mode = "lockstep";
         settings.config.scene_name = "swarm_small";
         settings.config.scene_text = load_scene_text("swarm_small").value();
-        settings.config.players = 2;
+        settings.config.players = players_;
         settings.config.ticks = kTicks;
+        settings.join_timeout_ms = 2000;
         settings.log_path = folder_.file("match.log");
         Result<std::unique_ptr<MatchServer>> server =
             MatchServer::create(settings, *server_transport_);
@@ -126,6 +127,7 @@ protected:
         std::unique_ptr<Bot> bot;
     };
 
+    std::uint32_t players_ = 2;
     testing::TemporaryFolder folder_;
     std::uint32_t domain_ = 0;
     std::shared_ptr<DdsParticipant> server_process_;
@@ -253,6 +255,68 @@ TEST_F(HostileMatch, DropsAPlayerWhoFloodsTheServer) {
     expect_honest_end(1);
     EXPECT_GT(counted(Violation::message_flood), 64U);
     EXPECT_EQ(server_->session().counters().drops, 1U);
+}
+
+/// A match with a seat that is free.
+class MismatchedClient : public HostileMatch {
+protected:
+    MismatchedClient() { players_ = 3; }
+
+    /// What the server answers the stranger, of the given kind; an empty one where nothing comes.
+    template <class Kind>
+    Kind answer() {
+        std::vector<Packet> packets;
+        std::optional<Kind> found;
+        EXPECT_TRUE(run_until([&] {
+            packets.clear();
+            stranger_->receive(packets);
+            for (const Packet& packet : packets) {
+                const Result<Message> message = decode(packet.bytes);
+                const Kind* kind = message.ok() ? std::get_if<Kind>(&message.value()) : nullptr;
+                found = kind != nullptr ? std::optional(*kind) : found;
+            }
+            return found.has_value();
+        }));
+        return found.value_or(Kind());
+    }
+};
+
+TEST_F(MismatchedClient, OfAnotherVersionIsToldBoth) {
+    say(*stranger_,
+        Channel::reliable,
+        Hello{kProtocolVersion, "0123456789abcdef", "a build of last week", 77, 1});
+    const Refuse refuse = answer<Refuse>();
+    EXPECT_EQ(refuse.reason, RefuseReason::sim_version);
+    EXPECT_EQ(refuse.field, "sim_version");
+    EXPECT_EQ(refuse.message,
+              "the server simulates with version " + std::string(sim_version()) +
+                  ", the client with 0123456789abcdef");
+    expect_honest_end(2);
+    EXPECT_EQ(counted(Violation::bad_hello), 1U);
+    EXPECT_EQ(server_->session().counters().joins, 2U);
+}
+
+// Scene and seed come from the server; who builds another world of them has another state.
+TEST_F(MismatchedClient, OfAnotherSceneOrSeedIsToldTheStateHash) {
+    say(*stranger_,
+        Channel::reliable,
+        Hello{kProtocolVersion, std::string(sim_version()), "stranger", 77, 1});
+    const Welcome welcome = answer<Welcome>();
+    EXPECT_EQ(welcome.slot, 2U);
+    MatchConfig config = welcome.config;
+    ++config.seed;
+    const auto simulation = create_match_simulation(config);
+    ASSERT_TRUE(simulation.ok());
+    say(*stranger_,
+        Channel::reliable,
+        Ready{welcome.resume_tick, simulation.value()->state_hash()});
+    const Refuse refuse = answer<Refuse>();
+    EXPECT_EQ(refuse.field, "state_hash");
+    EXPECT_NE(refuse.message.find("the server has "), std::string::npos) << refuse.message;
+    expect_honest_end(2);
+    EXPECT_EQ(counted(Violation::bad_state_hash), 1U);
+    EXPECT_EQ(server_->session().counters().desyncs, 0U);
+    EXPECT_EQ(server_->session().counters().joins, 2U);
 }
 
 } // namespace
