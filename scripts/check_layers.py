@@ -61,7 +61,7 @@ PUBLIC = {
     "base": "assert event hash_tree phase_observer result schema slot_input types",
     "math": "eigen fixed int128 integer overflow rng trig vector wide",
     "geometry": "shape",
-    "dynamics": "world_definition",
+    "dynamics": "simd world_definition",
     "systems": "player_input",
     "world": "world",
     "simulation": "simulation",

@@ -58,8 +58,8 @@ double separation(const World& world, const Manifold& manifold, std::uint32_t po
 
 } // namespace
 
-MeasuredWorld::MeasuredWorld(const WorldDefinition& definition) {
-    auto created = WorldSimulation::create(definition);
+MeasuredWorld::MeasuredWorld(const WorldDefinition& definition, Simd simd) {
+    auto created = WorldSimulation::create(definition, simd);
     if (!created) {
         give_up(created.error().message);
     }

@@ -14,7 +14,7 @@ namespace lockwind::bench {
 class MeasuredWorld {
 public:
     /// Ends the program with a message where the world cannot be created.
-    explicit MeasuredWorld(const WorldDefinition& definition);
+    explicit MeasuredWorld(const WorldDefinition& definition, Simd simd = best_simd());
 
     void step();
     WorldSimulation& simulation() { return *simulation_; }

@@ -26,11 +26,11 @@ void set_counters(benchmark::State& state, double awake, double contacts, double
 }
 
 /// One iteration: an untimed reset, then all steps; its time is their mean.
-void step_lockwind(benchmark::State& state, const BenchScene& scene) {
+void step_lockwind(benchmark::State& state, const BenchScene& scene, Simd simd) {
     const WorldDefinition definition = load_bench_scene(scene);
     for (auto iteration : state) {
         static_cast<void>(iteration);
-        MeasuredWorld world(definition);
+        MeasuredWorld world(definition, simd);
         const auto begin = Clock::now();
         for (std::uint32_t step = 0; step < scene.steps; ++step) {
             world.step();
@@ -59,11 +59,13 @@ void step_bullet(benchmark::State& state, const BenchScene& scene) {
     }
 }
 
-using StepFunction = void (*)(benchmark::State&, const BenchScene&);
-
-void register_step(const BenchScene& scene, const char* engine, StepFunction function) {
+template <class Step, class... Arguments>
+void register_step(const BenchScene& scene,
+                   const std::string& engine,
+                   Step step,
+                   Arguments... arguments) {
     const std::string name = std::string("step/") + scene.name + "/" + engine;
-    benchmark::RegisterBenchmark(name.c_str(), function, scene)
+    benchmark::RegisterBenchmark(name.c_str(), step, scene, arguments...)
         ->UseManualTime()
         ->Iterations(1)
         ->Unit(benchmark::kMillisecond);
@@ -73,7 +75,14 @@ void register_step(const BenchScene& scene, const char* engine, StepFunction fun
 
 void register_step_benchmarks() {
     for (const BenchScene& scene : kBenchScenes) {
-        register_step(scene, "lockwind", &step_lockwind);
+        register_step(scene, "lockwind", &step_lockwind, best_simd());
+        for (int index = 0; index < kSimdCount; ++index) {
+            const auto simd = static_cast<Simd>(index);
+            if (is_available(simd)) {
+                register_step(
+                    scene, std::string("lockwind_") + to_string(simd), &step_lockwind, simd);
+            }
+        }
         if (scene.players == 0) {
             register_step(scene, "bullet", &step_bullet);
         }

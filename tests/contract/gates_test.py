@@ -226,6 +226,15 @@ class Symbols(Gate):
                              'const char* const kNames[] = {"a", "b"};', "-fPIE")
         self.expect_clean(*self.check())
 
+    def test_catches_what_a_vector_file_shares(self):
+        text = ("namespace N_AVX2 { template <class T> [[gnu::noinline]] T own(T x) { return x + 1; } }\n"
+                "%sint f(int x) { return N_AVX2::own(x)%s; }")
+        self.plant("avx2.cpp", text % ("", ""))
+        self.expect_clean(*self.check())
+        self.plant("avx2.cpp", text % ("template <class T> [[gnu::noinline]] T planted(T x) { return x * x; }\n",
+                                       " + planted(x)"))
+        self.expect_caught("(avx2.cpp.o): shares int planted<int>(int)", *self.check())
+
     def test_refuses_to_pass_without_the_core(self):
         (self.copy / "sim-core/liblockwind_world.a").unlink()
         self.expect_caught("liblockwind_world.a is missing", *self.check())

@@ -3,6 +3,7 @@
 #include "lockwind/event.h"
 #include "lockwind/result.h"
 #include "lockwind/schema.h"
+#include "lockwind/simd.h"
 #include "lockwind/world_definition.h"
 
 #include <cstddef>
@@ -55,8 +56,9 @@ using WorldPtr = std::unique_ptr<World>;
 /// A deterministic rigid-body world. Same definition, same inputs: the same bits everywhere.
 class World {
 public:
-    /// An Error names the body and field that is wrong.
-    static Result<WorldPtr> create(const WorldDefinition& definition);
+    /// An Error names the body and field that is wrong. `simd` is available, see simd.h; it changes
+    /// no bit.
+    static Result<WorldPtr> create(const WorldDefinition& definition, Simd simd = best_simd());
     ~World();
     World(const World&) = delete;
     World& operator=(const World&) = delete;

@@ -15,7 +15,8 @@ namespace lockwind {
 /// A World as a Simulation: what sessions, logs and forensics run.
 class WorldSimulation final : public Simulation {
 public:
-    static Result<std::unique_ptr<WorldSimulation>> create(const WorldDefinition& definition);
+    static Result<std::unique_ptr<WorldSimulation>> create(const WorldDefinition& definition,
+                                                           Simd simd = best_simd());
     ~WorldSimulation() override;
 
     World& world();

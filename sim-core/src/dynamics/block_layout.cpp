@@ -93,7 +93,7 @@ void BlockLayout::run(const DynamicsTables& tables, std::span<const ColouredCont
         block.pair[lane] = contact.pair;
         block.manifold[lane] = pair.manifold;
         block.point_count[lane] = contact.point_count;
-        block.point_count_max = std::max(block.point_count_max, std::uint32_t{contact.point_count});
+        block.point_count_max = std::max(block.point_count_max, std::int32_t{contact.point_count});
         ++block.lane_count;
     }
 }

@@ -12,18 +12,24 @@ inline constexpr std::uint32_t kBlockPoints = 4;
 
 /// A body's velocities while the substeps run, Q11.20 m/s; angular ones times the gyration radius.
 /// Rows of four, so that a body is one vector register.
-struct SolverBody {
+struct alignas(64) SolverBody {
     std::int32_t linear[4];
     std::int32_t angular[4];
     std::int32_t linear_moved[4]; // velocities of the last position step
     std::int32_t angular_moved[4];
 };
 
-/// What prepare reads of a body.
+/// What prepare reads of a body, in one row, so that lanes can gather it four by four.
+inline constexpr int kBodyTermCount = 16;
 struct BodyTerms {
-    std::int32_t rotation[9];             // Q2.30; not that of a fixed body, see `turns`
-    std::int32_t inverse_inertia[6];      // xx xy xz yy yz zz, world, Q5.26; 0 unless dynamic
-    std::int32_t inverse_gyration_radius; // Q7.24; 0 of a fixed body
+    std::int32_t entry[kBodyTermCount];
+
+    std::int32_t* rotation() { return entry; } // 9, Q2.30
+    std::int32_t* inverse_inertia() {
+        return entry + 9;
+    } // xx xy xz yy yz zz, world, Q5.26;
+      // 0 unless dynamic
+    std::int32_t& inverse_gyration_radius() { return entry[15]; } // Q7.24; 0 of a fixed body
 };
 
 /// Eight contacts, one a lane, of which no two share a dynamic body (but in the overflow colour).
@@ -31,7 +37,7 @@ struct BodyTerms {
 /// Rows are normalised by K0 = 1/m_a + 1/m_b: an impulse is stored as lambda_hat = lambda K0, in
 /// velocity units, and masses appear only as the shares 1/m / K0. A body's angular velocity and its
 /// inertia are scaled by its gyration radius, so that every coefficient is of order one.
-struct ContactBlock {
+struct alignas(64) ContactBlock {
     template <class T>
     using Lanes = T[kBlockLanes];
     using Vector3 = std::int32_t[3][kBlockLanes];
@@ -55,9 +61,9 @@ struct ContactBlock {
     Lanes<BodyRow> row_b;
     Lanes<std::uint32_t> pair;
     Lanes<std::uint32_t> manifold;
-    Lanes<std::uint32_t> point_count;
-    int lane_count;                // lanes in use, from 0
-    std::uint32_t point_count_max; // of its lanes
+    Lanes<std::int32_t> point_count;
+    int lane_count;               // lanes in use, from 0
+    std::int32_t point_count_max; // of its lanes
 
     Vector3 normal; // Q3.28, like all below
     Vector3 tangent[2];

@@ -95,13 +95,13 @@ ContactSolver::ContactSolver(const DynamicsSettings& settings, const ContactKern
 void ContactSolver::read_terms(const BodyFrame& frame,
                                const BodyProperties& body,
                                BodyTerms& terms) const {
-    std::copy(frame.rotation, frame.rotation + 9, terms.rotation);
+    std::copy(frame.rotation, frame.rotation + 9, terms.rotation());
     const bool moves = body.mode != kFixed;
-    terms.inverse_gyration_radius = moves ? body.inverse_gyration_radius : 0;
+    terms.inverse_gyration_radius() = moves ? body.inverse_gyration_radius : 0;
     if (body.mode == kDynamic) {
-        turn_inertia(frame.rotation, body.inverse_inertia, terms.inverse_inertia);
+        turn_inertia(frame.rotation, body.inverse_inertia, terms.inverse_inertia());
     } else {
-        std::fill(terms.inverse_inertia, terms.inverse_inertia + 6, 0);
+        std::fill_n(terms.inverse_inertia(), 6, 0);
     }
 }
 
@@ -186,8 +186,8 @@ void ContactSolver::read_pair(const DynamicsTables& tables,
     block.mass_scale[lane] = softness.mass_scale;
     block.impulse_scale[lane] = softness.impulse_scale;
     block.bias_rate[lane] = softness.bias_rate;
-    block.impulse_max[lane] = kImpulseMax / static_cast<std::int32_t>(block.point_count[lane]);
-    for (std::uint32_t point = 0; point < block.point_count_max; ++point) {
+    block.impulse_max[lane] = kImpulseMax / block.point_count[lane];
+    for (int point = 0; point < block.point_count_max; ++point) {
         const bool exists = point < block.point_count[lane];
         block.point[point].impulse[lane] = exists ? manifold.normal_impulse[point] : 0;
     }
@@ -268,7 +268,7 @@ void ContactSolver::note_impacts() {
     for (Impact& impact : impacts_) {
         const ContactBlock& block = layout_.blocks()[impact.block];
         std::int64_t load = 0;
-        for (std::uint32_t point = 0; point < block.point_count[impact.lane]; ++point) {
+        for (int point = 0; point < block.point_count[impact.lane]; ++point) {
             const std::int32_t impulse = block.point[point].impulse[impact.lane];
             impact.impulse_max[point] = std::max(impact.impulse_max[point], impulse);
             load += impulse;
@@ -317,7 +317,7 @@ void ContactSolver::write_manifolds(const DynamicsTables& tables) {
     for (const ContactBlock& block : layout_.blocks()) {
         for (int lane = 0; lane < block.lane_count; ++lane) {
             Manifold& manifold = tables.manifolds[block.manifold[lane]];
-            for (std::uint32_t point = 0; point < block.point_count[lane]; ++point) {
+            for (int point = 0; point < block.point_count[lane]; ++point) {
                 manifold.normal_impulse[point] = block.point[point].impulse[lane];
             }
             manifold.friction_impulse[0] = block.friction_impulse[0][lane];
@@ -381,7 +381,7 @@ void ContactSolver::bounce(const DynamicsTables& tables, Impact& impact) {
     if (restitution <= 0) {
         return;
     }
-    for (std::uint32_t point = 0; point < block.point_count[impact.lane]; ++point) {
+    for (int point = 0; point < block.point_count[impact.lane]; ++point) {
         if (impact.approach[point] >= -kBounceSpeed || impact.impulse_max[point] == 0) {
             continue;
         }

@@ -2,6 +2,7 @@
 
 #include "dynamics/body_frame.h"
 #include "dynamics/broad_phase.h"
+#include "dynamics/contact_kernel_choice.h"
 #include "dynamics/contact_solver.h"
 #include "dynamics/manifold_slots.h"
 #include "dynamics/narrow_phase.h"
@@ -12,9 +13,9 @@
 namespace lockwind {
 
 struct Dynamics::Impl {
-    explicit Impl(const DynamicsSettings& settings)
+    Impl(const DynamicsSettings& settings, Simd simd)
         : frames(settings.body_capacity), slots(settings.manifold_capacity), broad(settings),
-          narrow(settings.body_capacity), solver(settings) {
+          narrow(settings.body_capacity), solver(settings, contact_kernels(simd)) {
         // A pair that goes and one that comes both change in a tick.
         changes.reserve(2 * std::size_t{settings.pair_capacity});
     }
@@ -27,7 +28,8 @@ struct Dynamics::Impl {
     std::vector<ContactChange> changes;
 };
 
-Dynamics::Dynamics(const DynamicsSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
+Dynamics::Dynamics(const DynamicsSettings& settings, Simd simd)
+    : impl_(std::make_unique<Impl>(settings, simd)) {}
 
 Dynamics::~Dynamics() = default;
 

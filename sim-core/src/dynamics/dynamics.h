@@ -4,6 +4,7 @@
 #include "dynamics/body.h"
 #include "dynamics/contact.h"
 
+#include "lockwind/simd.h"
 #include "lockwind/vector.h"
 
 #include <cstdint>
@@ -58,7 +59,8 @@ struct ContactHit {
 /// later tick reads, nothing allocated after construction.
 class Dynamics {
 public:
-    explicit Dynamics(const DynamicsSettings& settings);
+    /// `simd` is available, see simd.h.
+    explicit Dynamics(const DynamicsSettings& settings, Simd simd = best_simd());
     ~Dynamics();
     Dynamics(const Dynamics&) = delete;
     Dynamics& operator=(const Dynamics&) = delete;

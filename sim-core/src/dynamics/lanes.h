@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 
 /// Unrolls the next loop, of at most 16 rounds: g++ -O2 would leave it be, at half the speed.
 #define LOCKWIND_UNROLL _Pragma("GCC unroll 16")
@@ -18,6 +19,9 @@ inline constexpr int kBlockLanes = 8;
 
 /// Scales (first, second) back to length `limit` where it is longer: Coulomb's cone, exactly.
 inline void clamp_to_cone(std::int32_t& first, std::int32_t& second, std::int32_t limit) {
+    // So that the sum of the squares is below 2^63.
+    first = std::max(first, -std::numeric_limits<std::int32_t>::max());
+    second = std::max(second, -std::numeric_limits<std::int32_t>::max());
     const auto square = [](std::int32_t value) {
         return static_cast<std::uint64_t>(std::int64_t{value} * value);
     };
@@ -32,25 +36,31 @@ inline void clamp_to_cone(std::int32_t& first, std::int32_t& second, std::int32_
 }
 
 /// The solver's kernels are templates over lanes: a vector of int32 and one of the int64 sums of
-/// their products. This is the scalar one and the oracle: another one (AVX2: kWidth 8) has the same
-/// members and gives the same bits, because every operation is exact integer arithmetic.
+/// their products. This is the scalar one and the oracle: WideLanes has the same members and gives
+/// the same bits, because every operation is exact integer arithmetic.
 struct ScalarLanes {
     static constexpr int kWidth = 1;
     using Vector = std::int32_t;
     using Wide = std::int64_t;
 
+    /// A vector that only multiplies.
+    struct Factor {
+        Vector value;
+    };
+
     static Vector load(const std::int32_t* from) { return *from; }
+    static Factor load_factor(const std::int32_t* from) { return {*from}; }
     static void store(std::int32_t* to, Vector value) { *to = value; }
     static Vector set(std::int32_t value) { return value; }
-    /// source(lane) of the lanes from `first`.
+    /// The four values at source(lane) of each lane from `first`: out[i] has the lanes' i-th ones.
     template <class Source>
-    static Vector gather(int first, Source&& source) {
-        return source(first);
+    static void gather_quad(int first, Source&& source, Vector* out) {
+        std::copy_n(source(first), 4, out);
     }
-    /// Hands each lane's value to sink(lane, value).
-    template <class Sink>
-    static void scatter(int first, Vector value, Sink&& sink) {
-        sink(first, value);
+    /// The reverse: the lanes' i-th values are values[i].
+    template <class Target>
+    static void scatter_quad(int first, const Vector* values, Target&& target) {
+        std::copy_n(values, 4, target(first));
     }
 
     static Vector add(Vector a, Vector b) { return raw_add(a, b); }
@@ -79,12 +89,13 @@ struct ScalarLanes {
     static Wide add_product(Wide sum, Vector a, Vector b) {
         return raw_add(sum, std::int64_t{a} * b);
     }
+    static Wide add_product(Wide sum, Vector a, Factor b) { return add_product(sum, a, b.value); }
     template <int Shift>
     static Vector round(Wide sum) {
         return raw_narrow<std::int32_t>(sum >> Shift);
     }
-    template <int Shift>
-    static Vector multiply(Vector a, Vector b) {
+    template <int Shift, class Multiplier>
+    static Vector multiply(Vector a, Multiplier b) {
         return round<Shift>(add_product(start<Shift>(), a, b));
     }
     /// floor(2^Power / value), value > 0, exact.

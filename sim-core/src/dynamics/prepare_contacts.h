@@ -5,7 +5,6 @@
 #include "dynamics/lanes.h"
 
 #include <cstdint>
-#include <limits>
 
 namespace lockwind {
 
@@ -29,7 +28,8 @@ public:
 
     BlockPreparation(const PairTerms& terms, ContactBlock& block, int first)
         : terms_(terms), block_(block), first_(first),
-          points_(L::kWidth == 1 ? block.point_count[first] : block.point_count_max) {}
+          points_(static_cast<std::uint32_t>(L::kWidth == 1 ? block.point_count[first]
+                                                            : block.point_count_max)) {}
 
     void run(std::int32_t substep_rate, std::int32_t separation_max) {
         load();
@@ -57,27 +57,27 @@ private:
     void set_lane(std::int32_t (&lanes)[kBlockLanes], Vector value) const {
         L::store(lanes + first_, value);
     }
+    /// The lanes' four values from `source` of their manifolds on.
     template <class Source>
-    Vector of_manifold(Source&& source) const {
-        return L::gather(first_, [&](int lane) { return source(*terms_.manifold[lane]); });
+    void read_manifolds(Source&& source, Vector* out) const {
+        L::gather_quad(
+            first_, [&](int lane) { return source(*terms_.manifold[lane]); }, out);
     }
-    /// From centre A to B; 0 in the lanes that do not have this point, so that all its arms are 0.
-    Vector delta_when_made(std::uint32_t point, int axis) const {
-        return L::gather(first_, [&](int lane) {
-            const bool exists = L::kWidth == 1 || point < block_.point_count[lane];
-            return exists ? terms_.manifold[lane]->centre_delta[axis] : 0;
-        });
+    /// The lanes' coordinates of all points; those past points_ are not read.
+    template <class Source>
+    void read_points(Source&& source, Vector* out) const {
+        for (std::uint32_t entry = 0; entry < 3 * points_; entry += 4) {
+            read_manifolds([&](const Manifold& m) { return source(m) + entry; }, out + entry);
+        }
     }
     /// `value`, or 0 in the lanes that do not have this point.
     Vector of_point(std::uint32_t point, Vector value) const {
         if constexpr (L::kWidth == 1) {
             return value;
         }
-        return L::minimum(value, L::gather(first_, [&](int lane) {
-                              return point < block_.point_count[lane]
-                                         ? std::numeric_limits<std::int32_t>::max()
-                                         : 0;
-                          }));
+        const Vector exists =
+            L::subtract(lane(block_.point_count), L::set(static_cast<std::int32_t>(point)));
+        return L::select_positive(exists, value, L::set(0));
     }
 
     static Wide add_dot(Wide sum, const Vector a[3], const Vector b[3]) {
@@ -135,6 +135,11 @@ private:
             L::maximum(k, least));
     }
 
+    // The parts of BodyTerms.
+    static const Vector* rotation(const Vector* body) { return body; }
+    static const Vector* inertia(const Vector* body) { return body + 9; }
+    static Vector inverse_radius(const Vector* body) { return body[15]; }
+
     void load();
     void make_separation(std::uint32_t point, std::int32_t rate, std::int32_t separation_max);
     void fill_row(const Jacobian& jacobian, ContactBlock::Row& row);
@@ -151,15 +156,16 @@ private:
     int first_;
     std::uint32_t points_;
 
-    Vector axes_[3][3]; // normal, first tangent, second tangent, Q2.30
+    Vector axes_[3][4]; // normal, first tangent, second tangent, Q2.30; xyz and what lies behind
+    Vector delta_when_made_[4];
+    Vector separation_when_made_[kBlockPoints];
+    Vector local_a_[3 * kBlockPoints];
+    Vector local_b_[3 * kBlockPoints];
+    Vector anchor_a_[3 * kBlockPoints];
     Vector share_a_;
     Vector share_b_;
-    Vector rotation_a_[9];
-    Vector rotation_b_[9];
-    Vector inertia_a_[6];
-    Vector inertia_b_[6];
-    Vector inverse_radius_a_;
-    Vector inverse_radius_b_;
+    Vector body_a_[kBodyTermCount];
+    Vector body_b_[kBodyTermCount];
     Vector arm_a_[kBlockPoints][3]; // Q9.22 m, world, as when the manifold was made
     Vector arm_b_[kBlockPoints][3];
     Vector weight_[kBlockPoints]; // in the friction centre, Q3.28
@@ -169,11 +175,13 @@ private:
 
 template <class L>
 void BlockPreparation<L>::load() {
-    LOCKWIND_UNROLL
-    for (int axis = 0; axis < 3; ++axis) {
-        axes_[0][axis] = of_manifold([&](const Manifold& m) { return m.normal[axis]; });
-        axes_[1][axis] = of_manifold([&](const Manifold& m) { return m.tangent[axis]; });
-    }
+    read_manifolds([](const Manifold& m) { return m.normal; }, axes_[0]);
+    read_manifolds([](const Manifold& m) { return m.tangent; }, axes_[1]);
+    read_manifolds([](const Manifold& m) { return m.centre_delta; }, delta_when_made_);
+    read_manifolds([](const Manifold& m) { return m.separation; }, separation_when_made_);
+    read_points([](const Manifold& m) { return m.local_a; }, local_a_);
+    read_points([](const Manifold& m) { return m.local_b; }, local_b_);
+    read_points([](const Manifold& m) { return m.anchor_a; }, anchor_a_);
     cross(axes_[0], axes_[1], axes_[2]);
     const auto narrow = [](Vector unit) {
         constexpr int kShift = kUnitFraction - kCoefficientFraction;
@@ -187,27 +195,13 @@ void BlockPreparation<L>::load() {
     }
     share_a_ = lane(block_.share_a);
     share_b_ = lane(block_.share_b);
-    const auto of_a = [&](auto&& source) {
-        return L::gather(first_, [&](int lane) { return source(*terms_.body_a[lane]); });
-    };
-    const auto of_b = [&](auto&& source) {
-        return L::gather(first_, [&](int lane) { return source(*terms_.body_b[lane]); });
-    };
     LOCKWIND_UNROLL
-    for (int entry = 0; entry < 9; ++entry) {
-        const auto rotation = [=](const BodyTerms& body) { return body.rotation[entry]; };
-        rotation_a_[entry] = of_a(rotation);
-        rotation_b_[entry] = of_b(rotation);
+    for (int entry = 0; entry < kBodyTermCount; entry += 4) {
+        L::gather_quad(
+            first_, [&](int lane) { return terms_.body_a[lane]->entry + entry; }, body_a_ + entry);
+        L::gather_quad(
+            first_, [&](int lane) { return terms_.body_b[lane]->entry + entry; }, body_b_ + entry);
     }
-    LOCKWIND_UNROLL
-    for (int entry = 0; entry < 6; ++entry) {
-        const auto inertia = [=](const BodyTerms& body) { return body.inverse_inertia[entry]; };
-        inertia_a_[entry] = of_a(inertia);
-        inertia_b_[entry] = of_b(inertia);
-    }
-    const auto inverse_radius = [](const BodyTerms& body) { return body.inverse_gyration_radius; };
-    inverse_radius_a_ = of_a(inverse_radius);
-    inverse_radius_b_ = of_b(inverse_radius);
 }
 
 /// How far apart the surfaces are now, as a velocity that closes it in a substep; and the arms.
@@ -215,25 +209,21 @@ template <class L>
 void BlockPreparation<L>::make_separation(std::uint32_t point,
                                           std::int32_t rate,
                                           std::int32_t separation_max) {
-    const auto entry = static_cast<int>(3 * point);
-    Vector local_a[3];
-    Vector local_b[3];
     LOCKWIND_UNROLL
     for (int axis = 0; axis < 3; ++axis) {
-        const int index = entry + axis;
-        local_a[axis] = of_manifold([=](const Manifold& m) { return m.local_a[index]; });
-        local_b[axis] = of_manifold([=](const Manifold& m) { return m.local_b[index]; });
-        arm_a_[point][axis] = of_manifold([=](const Manifold& m) { return m.anchor_a[index]; });
-        arm_b_[point][axis] = L::subtract(arm_a_[point][axis], delta_when_made(point, axis));
+        arm_a_[point][axis] = anchor_a_[3 * point + axis];
+        // 0 in the lanes that do not have this point, so that all its arms are 0.
+        arm_b_[point][axis] =
+            L::subtract(arm_a_[point][axis], of_point(point, delta_when_made_[axis]));
     }
     Vector apart[3];
     LOCKWIND_UNROLL
     for (int axis = 0; axis < 3; ++axis) {
-        const Vector now_a = dot<kUnitFraction>(rotation_a_ + 3 * axis, local_a);
-        const Vector now_b = dot<kUnitFraction>(rotation_b_ + 3 * axis, local_b);
+        const Vector now_a = dot<kUnitFraction>(rotation(body_a_) + 3 * axis, local_a_ + 3 * point);
+        const Vector now_b = dot<kUnitFraction>(rotation(body_b_) + 3 * axis, local_b_ + 3 * point);
         apart[axis] = L::add(lane(terms_.centre_delta[axis]), L::subtract(now_b, now_a));
     }
-    const Vector base = of_manifold([=](const Manifold& m) { return m.separation[point]; });
+    const Vector base = separation_when_made_[point];
     // Bounded before the change of unit, which multiplies by up to 960.
     const Vector separation = L::clamp(L::add(base, dot<kUnitFraction>(axes_[0], apart)),
                                        L::set(-separation_max),
@@ -252,20 +242,20 @@ template <class L>
 typename BlockPreparation<L>::Jacobian BlockPreparation<L>::jacobian_of(
     const Vector arm_a[3], const Vector arm_b[3], const Vector along[3]) const {
     Jacobian jacobian;
-    lever_row(arm_a, inverse_radius_a_, along, jacobian.a);
+    lever_row(arm_a, inverse_radius(body_a_), along, jacobian.a);
     LOCKWIND_UNROLL
     for (Vector& entry : jacobian.a) {
         entry = L::negate(entry);
     }
-    lever_row(arm_b, inverse_radius_b_, along, jacobian.b);
+    lever_row(arm_b, inverse_radius(body_b_), along, jacobian.b);
     return jacobian;
 }
 
 template <class L>
 void BlockPreparation<L>::fill_row(const Jacobian& jacobian, ContactBlock::Row& row) {
     Jacobian response;
-    respond(inertia_a_, jacobian.a, share_a_, response.a);
-    respond(inertia_b_, jacobian.b, share_b_, response.b);
+    respond(inertia(body_a_), jacobian.a, share_a_, response.a);
+    respond(inertia(body_b_), jacobian.b, share_b_, response.b);
     constexpr int kShift = 2 * kCoefficientFraction - kEffectiveMassFraction;
     Wide sum = add_dot(L::template start<kShift>(), jacobian.a, response.a);
     sum = add_dot(sum, jacobian.b, response.b);
@@ -379,8 +369,8 @@ void BlockPreparation<L>::make_twist_row() {
         jacobian.b[axis] = L::template multiply<kUnitFraction>(lever_b, axes_[0][axis]);
     }
     Jacobian response;
-    respond(inertia_a_, jacobian.a, share_a_, response.a);
-    respond(inertia_b_, jacobian.b, share_b_, response.b);
+    respond(inertia(body_a_), jacobian.a, share_a_, response.a);
+    respond(inertia(body_b_), jacobian.b, share_b_, response.b);
     constexpr int kShift = 2 * kCoefficientFraction - kEffectiveMassFraction;
     Wide sum = add_dot(L::template start<kShift>(), jacobian.a, response.a);
     sum = add_dot(sum, jacobian.b, response.b);

@@ -59,11 +59,12 @@ public:
             const Vector v = coupled_speed(speed[point], applied, point);
             const Vector open = L::add(v, separation);
             const Vector bias =
-                L::maximum(scale(separation, lane(block_.bias_rate)), L::set(-kPushOutSpeedMax));
-            const Vector pressed = L::add(scale(v, lane(block_.mass_scale)), bias);
-            const Vector lost = L::add(
-                scale(L::select_positive(separation, open, pressed), lane(p.row.mass)),
-                L::select_positive(separation, L::set(0), scale(old, lane(block_.impulse_scale))));
+                L::maximum(scale(separation, factor(block_.bias_rate)), L::set(-kPushOutSpeedMax));
+            const Vector pressed = L::add(scale(v, factor(block_.mass_scale)), bias);
+            const Vector lost =
+                L::add(scale(L::select_positive(separation, open, pressed), factor(p.row.mass)),
+                       L::select_positive(
+                           separation, L::set(0), scale(old, factor(block_.impulse_scale))));
             applied[point] = accumulate(point, old, lost);
         }
         apply_normal(applied);
@@ -89,14 +90,14 @@ public:
             const Vector old = lane(p.impulse);
             const Vector v = coupled_speed(speed[point], applied, point);
             const Vector lost =
-                scale(L::add(v, L::maximum(separation, L::set(0))), lane(p.row.mass));
+                scale(L::add(v, L::maximum(separation, L::set(0))), factor(p.row.mass));
             applied[point] = accumulate(point, old, lost);
             const Vector now = L::add(old, applied[point]);
             load = L::add(load, now);
-            twist_load = L::add(twist_load, loaded(scale(now, lane(p.lever))));
+            twist_load = L::add(twist_load, loaded(scale(now, factor(p.lever))));
         }
         apply_normal(applied);
-        const Vector friction = lane(block_.friction);
+        const Factor friction = factor(block_.friction);
         if constexpr (kPoints > 1) {
             relax_twist(scale(loaded(twist_load), friction));
         }
@@ -114,11 +115,11 @@ public:
 
     /// Brings one point to a separating speed by an impulse that leaves `carried` + impulse >= 0;
     /// returns the impulse. Scalar lanes only.
-    std::int32_t reach_speed(std::uint32_t point, std::int32_t target, std::int32_t carried) {
+    std::int32_t reach_speed(int point, std::int32_t target, std::int32_t carried) {
         std::int32_t speed[kPoints] = {};
         read_speeds(speed);
         const std::int32_t lost =
-            scale(L::subtract(speed[point], target), lane(block_.point[point].row.mass));
+            scale(L::subtract(speed[point], target), factor(block_.point[point].row.mass));
         std::int32_t applied[kPoints] = {};
         applied[point] = L::subtract(L::maximum(L::subtract(carried, lost), 0), carried);
         apply_normal(applied);
@@ -127,15 +128,24 @@ public:
     }
 
 private:
+    using Factor = typename L::Factor;
+
     struct Velocities {
-        Vector a[3];
-        Vector b[3];
+        Vector a[4]; // xyz and the row's filling
+        Vector b[4];
     };
+
+    SolverBody& body_a(int lane) const { return bodies_[block_.row_a[lane]]; }
+    SolverBody& body_b(int lane) const { return bodies_[block_.row_b[lane]]; }
 
     [[gnu::always_inline]] Vector lane(const std::int32_t (&lanes)[kBlockLanes]) const {
         return L::load(lanes + first_);
     }
-    static Vector scale(Vector velocity, Vector coefficient) {
+    [[gnu::always_inline]] Factor factor(const std::int32_t (&lanes)[kBlockLanes]) const {
+        return L::load_factor(lanes + first_);
+    }
+    template <class Coefficient>
+    static Vector scale(Vector velocity, const Coefficient& coefficient) {
         return L::template multiply<kCoefficientFraction>(velocity, coefficient);
     }
     static Vector loaded(Vector load) { return L::minimum(load, L::set(kFrictionLoadMax)); }
@@ -143,34 +153,20 @@ private:
     static Vector finish(Wide sum) { return L::template round<kCoefficientFraction>(sum); }
 
     [[gnu::always_inline]] void read_velocities() {
-        LOCKWIND_UNROLL
-        for (int axis = 0; axis < 3; ++axis) {
-            linear_.a[axis] = L::gather(
-                first_, [&](int lane) { return bodies_[block_.row_a[lane]].linear[axis]; });
-            linear_.b[axis] = L::gather(
-                first_, [&](int lane) { return bodies_[block_.row_b[lane]].linear[axis]; });
-            angular_.a[axis] = L::gather(
-                first_, [&](int lane) { return bodies_[block_.row_a[lane]].angular[axis]; });
-            angular_.b[axis] = L::gather(
-                first_, [&](int lane) { return bodies_[block_.row_b[lane]].angular[axis]; });
-        }
+        L::gather_quad(
+            first_, [&](int lane) { return body_a(lane).linear; }, linear_.a);
+        L::gather_quad(
+            first_, [&](int lane) { return body_b(lane).linear; }, linear_.b);
+        L::gather_quad(
+            first_, [&](int lane) { return body_a(lane).angular; }, angular_.a);
+        L::gather_quad(
+            first_, [&](int lane) { return body_b(lane).angular; }, angular_.b);
     }
     [[gnu::always_inline]] void write_velocities() {
-        LOCKWIND_UNROLL
-        for (int axis = 0; axis < 3; ++axis) {
-            L::scatter(first_, linear_.a[axis], [&](int lane, std::int32_t value) {
-                bodies_[block_.row_a[lane]].linear[axis] = value;
-            });
-            L::scatter(first_, angular_.a[axis], [&](int lane, std::int32_t value) {
-                bodies_[block_.row_a[lane]].angular[axis] = value;
-            });
-            L::scatter(first_, linear_.b[axis], [&](int lane, std::int32_t value) {
-                bodies_[block_.row_b[lane]].linear[axis] = value;
-            });
-            L::scatter(first_, angular_.b[axis], [&](int lane, std::int32_t value) {
-                bodies_[block_.row_b[lane]].angular[axis] = value;
-            });
-        }
+        L::scatter_quad(first_, linear_.a, [&](int lane) { return body_a(lane).linear; });
+        L::scatter_quad(first_, angular_.a, [&](int lane) { return body_a(lane).angular; });
+        L::scatter_quad(first_, linear_.b, [&](int lane) { return body_b(lane).linear; });
+        L::scatter_quad(first_, angular_.b, [&](int lane) { return body_b(lane).angular; });
     }
 
     /// Approach speeds J v of the points.
@@ -181,7 +177,7 @@ private:
         LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             along = L::add_product(
-                along, L::subtract(linear.b[axis], linear.a[axis]), lane(block_.normal[axis]));
+                along, L::subtract(linear.b[axis], linear.a[axis]), factor(block_.normal[axis]));
         }
         LOCKWIND_UNROLL
         for (std::uint32_t point = 0; point < kPoints; ++point) {
@@ -189,8 +185,8 @@ private:
             Wide sum = along;
             LOCKWIND_UNROLL
             for (int axis = 0; axis < 3; ++axis) {
-                sum = L::add_product(sum, angular.a[axis], lane(row.jacobian_a[axis]));
-                sum = L::add_product(sum, angular.b[axis], lane(row.jacobian_b[axis]));
+                sum = L::add_product(sum, angular.a[axis], factor(row.jacobian_a[axis]));
+                sum = L::add_product(sum, angular.b[axis], factor(row.jacobian_b[axis]));
             }
             speed[point] = finish(sum);
         }
@@ -199,17 +195,14 @@ private:
     [[gnu::always_inline]] void find_moved(Vector (&moved)[kPoints]) const {
         Velocities linear;
         Velocities angular;
-        LOCKWIND_UNROLL
-        for (int axis = 0; axis < 3; ++axis) {
-            linear.a[axis] = L::gather(
-                first_, [&](int lane) { return bodies_[block_.row_a[lane]].linear_moved[axis]; });
-            linear.b[axis] = L::gather(
-                first_, [&](int lane) { return bodies_[block_.row_b[lane]].linear_moved[axis]; });
-            angular.a[axis] = L::gather(
-                first_, [&](int lane) { return bodies_[block_.row_a[lane]].angular_moved[axis]; });
-            angular.b[axis] = L::gather(
-                first_, [&](int lane) { return bodies_[block_.row_b[lane]].angular_moved[axis]; });
-        }
+        L::gather_quad(
+            first_, [&](int lane) { return body_a(lane).linear_moved; }, linear.a);
+        L::gather_quad(
+            first_, [&](int lane) { return body_b(lane).linear_moved; }, linear.b);
+        L::gather_quad(
+            first_, [&](int lane) { return body_a(lane).angular_moved; }, angular.a);
+        L::gather_quad(
+            first_, [&](int lane) { return body_b(lane).angular_moved; }, angular.b);
         find_speeds(linear, angular, moved);
     }
 
@@ -223,7 +216,7 @@ private:
         LOCKWIND_UNROLL
         for (std::uint32_t other = 0; other < point; ++other) {
             const int index = coupling_index(static_cast<int>(point), static_cast<int>(other));
-            sum = L::add_product(sum, applied[other], lane(block_.coupling[index]));
+            sum = L::add_product(sum, applied[other], factor(block_.coupling[index]));
         }
         return L::add(speed, finish(sum));
     }
@@ -239,11 +232,11 @@ private:
         for (std::uint32_t point = 1; point < kPoints; ++point) {
             total = L::add(total, impulse[point]);
         }
-        const Vector to_a = scale(total, lane(block_.share_a));
-        const Vector to_b = scale(total, lane(block_.share_b));
+        const Vector to_a = scale(total, factor(block_.share_a));
+        const Vector to_b = scale(total, factor(block_.share_b));
         LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
-            const Vector normal = lane(block_.normal[axis]);
+            const Factor normal = factor(block_.normal[axis]);
             linear_.a[axis] = L::subtract(linear_.a[axis], scale(to_a, normal));
             linear_.b[axis] = L::add(linear_.b[axis], scale(to_b, normal));
             Wide sum_a = start();
@@ -251,8 +244,8 @@ private:
             LOCKWIND_UNROLL
             for (std::uint32_t point = 0; point < kPoints; ++point) {
                 const ContactBlock::Row& row = block_.point[point].row;
-                sum_a = L::add_product(sum_a, impulse[point], lane(row.response_a[axis]));
-                sum_b = L::add_product(sum_b, impulse[point], lane(row.response_b[axis]));
+                sum_a = L::add_product(sum_a, impulse[point], factor(row.response_a[axis]));
+                sum_b = L::add_product(sum_b, impulse[point], factor(row.response_b[axis]));
             }
             angular_.a[axis] = L::add(angular_.a[axis], finish(sum_a));
             angular_.b[axis] = L::add(angular_.b[axis], finish(sum_b));
@@ -260,29 +253,31 @@ private:
     }
 
     [[gnu::always_inline]] void apply_tangent(Vector first, Vector second) {
-        const Vector share_a = lane(block_.share_a);
-        const Vector share_b = lane(block_.share_b);
+        const Factor share_a = factor(block_.share_a);
+        const Factor share_b = factor(block_.share_b);
         const Vector to_a[2] = {scale(first, share_a), scale(second, share_a)};
         const Vector to_b[2] = {scale(first, share_b), scale(second, share_b)};
         const ContactBlock::Row& row_0 = block_.tangent_row[0];
         const ContactBlock::Row& row_1 = block_.tangent_row[1];
-        const auto sum_of = [](Vector x, Vector by_x, Vector y, Vector by_y) {
+        const auto sum_of = [](Vector x, const Factor& by_x, Vector y, const Factor& by_y) {
             return finish(L::add_product(L::add_product(start(), x, by_x), y, by_y));
         };
         LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
-            const Vector tangent_0 = lane(block_.tangent[0][axis]);
-            const Vector tangent_1 = lane(block_.tangent[1][axis]);
+            const Factor tangent_0 = factor(block_.tangent[0][axis]);
+            const Factor tangent_1 = factor(block_.tangent[1][axis]);
             linear_.a[axis] =
                 L::subtract(linear_.a[axis], sum_of(to_a[0], tangent_0, to_a[1], tangent_1));
             linear_.b[axis] =
                 L::add(linear_.b[axis], sum_of(to_b[0], tangent_0, to_b[1], tangent_1));
             angular_.a[axis] = L::add(
                 angular_.a[axis],
-                sum_of(first, lane(row_0.response_a[axis]), second, lane(row_1.response_a[axis])));
+                sum_of(
+                    first, factor(row_0.response_a[axis]), second, factor(row_1.response_a[axis])));
             angular_.b[axis] = L::add(
                 angular_.b[axis],
-                sum_of(first, lane(row_0.response_b[axis]), second, lane(row_1.response_b[axis])));
+                sum_of(
+                    first, factor(row_0.response_b[axis]), second, factor(row_1.response_b[axis])));
         }
     }
 
@@ -290,9 +285,9 @@ private:
         LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             angular_.a[axis] =
-                L::add(angular_.a[axis], scale(impulse, lane(block_.twist_response_a[axis])));
+                L::add(angular_.a[axis], scale(impulse, factor(block_.twist_response_a[axis])));
             angular_.b[axis] =
-                L::add(angular_.b[axis], scale(impulse, lane(block_.twist_response_b[axis])));
+                L::add(angular_.b[axis], scale(impulse, factor(block_.twist_response_b[axis])));
         }
     }
 
@@ -301,17 +296,17 @@ private:
         Wide spin_b = start();
         LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
-            const Vector normal = lane(block_.normal[axis]);
+            const Factor normal = factor(block_.normal[axis]);
             spin_a = L::add_product(spin_a, angular_.a[axis], normal);
             spin_b = L::add_product(spin_b, angular_.b[axis], normal);
         }
         const Vector speed = finish(
-            L::add_product(L::add_product(start(), finish(spin_a), lane(block_.twist_lever_a)),
+            L::add_product(L::add_product(start(), finish(spin_a), factor(block_.twist_lever_a)),
                            finish(spin_b),
-                           lane(block_.twist_lever_b)));
+                           factor(block_.twist_lever_b)));
         const Vector old = lane(block_.twist_impulse);
         const Vector now = L::clamp(
-            L::subtract(old, scale(speed, lane(block_.twist_mass))), L::negate(limit), limit);
+            L::subtract(old, scale(speed, factor(block_.twist_mass))), L::negate(limit), limit);
         L::store(block_.twist_impulse + first_, now);
         apply_twist(L::subtract(now, old));
     }
@@ -324,21 +319,22 @@ private:
             LOCKWIND_UNROLL
             for (int which = 0; which < 2; ++which) {
                 const ContactBlock::Row& row = block_.tangent_row[which];
-                sum[which] = L::add_product(sum[which], sliding, lane(block_.tangent[which][axis]));
                 sum[which] =
-                    L::add_product(sum[which], angular_.a[axis], lane(row.jacobian_a[axis]));
+                    L::add_product(sum[which], sliding, factor(block_.tangent[which][axis]));
                 sum[which] =
-                    L::add_product(sum[which], angular_.b[axis], lane(row.jacobian_b[axis]));
+                    L::add_product(sum[which], angular_.a[axis], factor(row.jacobian_a[axis]));
+                sum[which] =
+                    L::add_product(sum[which], angular_.b[axis], factor(row.jacobian_b[axis]));
             }
         }
         const Vector old_0 = lane(block_.friction_impulse[0]);
         const Vector old_1 = lane(block_.friction_impulse[1]);
-        const Vector lost_0 = scale(finish(sum[0]), lane(block_.tangent_row[0].mass));
+        const Vector lost_0 = scale(finish(sum[0]), factor(block_.tangent_row[0].mass));
         // The first row's impulse changes the second one's speed.
         const Vector speed_1 =
-            L::subtract(finish(sum[1]), scale(lost_0, lane(block_.tangent_coupling)));
+            L::subtract(finish(sum[1]), scale(lost_0, factor(block_.tangent_coupling)));
         Vector now_0 = L::subtract(old_0, lost_0);
-        Vector now_1 = L::subtract(old_1, scale(speed_1, lane(block_.tangent_row[1].mass)));
+        Vector now_1 = L::subtract(old_1, scale(speed_1, factor(block_.tangent_row[1].mass)));
         L::clamp_to_cone(now_0, now_1, limit);
         L::store(block_.friction_impulse[0] + first_, now_0);
         L::store(block_.friction_impulse[1] + first_, now_1);

@@ -91,9 +91,9 @@ WorldSimulation::WorldSimulation(std::unique_ptr<Impl> impl) : impl_(std::move(i
 
 WorldSimulation::~WorldSimulation() = default;
 
-Result<std::unique_ptr<WorldSimulation>>
-WorldSimulation::create(const WorldDefinition& definition) {
-    Result<WorldPtr> world = World::create(definition);
+Result<std::unique_ptr<WorldSimulation>> WorldSimulation::create(const WorldDefinition& definition,
+                                                                 Simd simd) {
+    Result<WorldPtr> world = World::create(definition, simd);
     if (!world) {
         return world.error();
     }

@@ -59,11 +59,12 @@ Status make_bodies(const WorldDefinition& definition, const DynamicsTables& tabl
 
 World::Impl::Impl(const WorldDefinition& definition,
                   const DynamicsSettings& dynamics_capacities,
+                  Simd simd,
                   PodSystem pod_system)
     : settings(definition.settings), capacities(dynamics_capacities),
       arena(kWorldSections, capacities_of(capacities, definition.pods.size())),
       staging(kWorldSections, capacities_of(capacities, definition.pods.size())), hasher(arena),
-      dynamics(capacities), pods(std::move(pod_system)),
+      dynamics(capacities, simd), pods(std::move(pod_system)),
       spawner(capacities.body_capacity, creations_max(definition.pods.size())),
       events(events_max(capacities)), manifold_seen(capacities.manifold_capacity) {}
 
@@ -78,7 +79,7 @@ World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 World::~World() = default;
 
-Result<WorldPtr> World::create(const WorldDefinition& definition) {
+Result<WorldPtr> World::create(const WorldDefinition& definition, Simd simd) {
     if (Status status = check_definition(definition); !status) {
         return status.error();
     }
@@ -87,7 +88,7 @@ Result<WorldPtr> World::create(const WorldDefinition& definition) {
     if (!pods) {
         return pods.error();
     }
-    auto impl = std::make_unique<Impl>(definition, capacities, std::move(pods).value());
+    auto impl = std::make_unique<Impl>(definition, capacities, simd, std::move(pods).value());
     const DynamicsTables tables = impl->tables();
     if (Status status = make_bodies(definition, tables); !status) {
         return status.error();

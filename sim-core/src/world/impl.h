@@ -19,6 +19,7 @@ namespace lockwind {
 struct World::Impl {
     Impl(const WorldDefinition& definition,
          const DynamicsSettings& capacities,
+         Simd simd,
          PodSystem pod_system);
 
     Globals& globals() { return arena.table<Globals>(section::kGlobals)[0]; }

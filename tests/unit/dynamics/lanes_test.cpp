@@ -1,9 +1,11 @@
 #include "dynamics/broad_phase.h"
+#include "dynamics/contact_kernel_choice.h"
 #include "dynamics/contact_solver.h"
 #include "dynamics/narrow_phase.h"
 #include "tests/unit/dynamics/dynamics_bench.h"
 
 #include <array>
+#include <iostream>
 #include <numbers>
 #include <random>
 
@@ -15,6 +17,9 @@ struct EightLanes {
     static constexpr int kWidth = 8;
     using Vector = std::array<std::int32_t, 8>;
     using Wide = std::array<std::int64_t, 8>;
+    struct Factor {
+        Vector value;
+    };
     using One = ScalarLanes;
 
     template <class Operation>
@@ -28,6 +33,7 @@ struct EightLanes {
     static Vector load(const std::int32_t* from) {
         return each([=](std::size_t lane) { return from[lane]; });
     }
+    static Factor load_factor(const std::int32_t* from) { return {load(from)}; }
     static void store(std::int32_t* to, const Vector& value) {
         std::copy(value.begin(), value.end(), to);
     }
@@ -35,13 +41,19 @@ struct EightLanes {
         return each([=](std::size_t) { return value; });
     }
     template <class Source>
-    static Vector gather(int first, Source&& source) {
-        return each([&](std::size_t lane) { return source(first + static_cast<int>(lane)); });
+    static void gather_quad(int first, Source&& source, Vector* out) {
+        for (int lane = 0; lane < 8; ++lane) {
+            for (int entry = 0; entry < 4; ++entry) {
+                out[entry][static_cast<std::size_t>(lane)] = source(first + lane)[entry];
+            }
+        }
     }
-    template <class Sink>
-    static void scatter(int first, const Vector& value, Sink&& sink) {
-        for (std::size_t lane = 0; lane < 8; ++lane) {
-            sink(first + static_cast<int>(lane), value[lane]);
+    template <class Target>
+    static void scatter_quad(int first, const Vector* values, Target&& target) {
+        for (int lane = 0; lane < 8; ++lane) {
+            for (int entry = 0; entry < 4; ++entry) {
+                target(first + lane)[entry] = values[entry][static_cast<std::size_t>(lane)];
+            }
         }
     }
     static Vector add(const Vector& a, const Vector& b) {
@@ -83,12 +95,15 @@ struct EightLanes {
         }
         return sum;
     }
+    static Wide add_product(const Wide& sum, const Vector& a, const Factor& b) {
+        return add_product(sum, a, b.value);
+    }
     template <int Shift>
     static Vector round(const Wide& sum) {
         return each([&](std::size_t lane) { return One::round<Shift>(sum[lane]); });
     }
-    template <int Shift>
-    static Vector multiply(const Vector& a, const Vector& b) {
+    template <int Shift, class Multiplier>
+    static Vector multiply(const Vector& a, const Multiplier& b) {
         return round<Shift>(add_product(start<Shift>(), a, b));
     }
     template <int Power>
@@ -163,9 +178,10 @@ private:
     std::unique_ptr<ContactSolver> solver_;
 };
 
-TEST(Lanes, WidthChangesNoBit) {
+/// Steps the heap with scalar kernels and with others.
+void expect_same_steps(const ContactKernels& kernels) {
     SolverRun narrow(kernels_of<ScalarLanes>());
-    SolverRun wide(kernels_of<EightLanes>());
+    SolverRun wide(kernels);
     std::uint32_t with_points[5] = {};
     for (int tick = 0; tick < 90; ++tick) {
         narrow.step();
@@ -178,6 +194,23 @@ TEST(Lanes, WidthChangesNoBit) {
     for (int points = 1; points <= 4; ++points) {
         EXPECT_GT(with_points[points], 50U) << points << " points";
     }
+}
+
+TEST(Lanes, WidthChangesNoBit) {
+    expect_same_steps(kernels_of<EightLanes>());
+}
+
+TEST(Lanes, NoInstructionSetChangesABitOfAHeap) {
+    int available = 0;
+    for (int simd = 1; simd < kSimdCount; ++simd) {
+        if (is_available(static_cast<Simd>(simd))) {
+            SCOPED_TRACE(to_string(static_cast<Simd>(simd)));
+            expect_same_steps(contact_kernels(static_cast<Simd>(simd)));
+            ++available;
+        }
+    }
+    std::cout << available << " instruction sets beside the scalar one\n";
+    EXPECT_EQ(available > 0, best_simd() != Simd::scalar);
 }
 
 TEST(Lanes, ConeKeepsDirectionAndLength) {

@@ -1,0 +1,277 @@
+#include "dynamics/contact_kernel_choice.h"
+#include "tests/support/dice.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <gtest/gtest.h>
+#include <iostream>
+#include <iterator>
+#include <limits>
+#include <memory>
+
+// The kernels of each instruction set against the scalar ones, block by block, on values that no
+// simulation would bring: the lanes wrap as the scalar ones do.
+namespace lockwind {
+namespace {
+
+using testing::Dice;
+
+constexpr int kBodies = 2 * kBlockLanes;
+
+std::int32_t any(Dice& dice) {
+    constexpr std::int32_t kEnds[] = {std::numeric_limits<std::int32_t>::min(),
+                                      std::numeric_limits<std::int32_t>::max(),
+                                      -1,
+                                      0,
+                                      1};
+    if (dice.chance(20)) {
+        return kEnds[dice.below(std::size(kEnds))];
+    }
+    // Of all magnitudes: a uniform draw would nearly always be huge.
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(dice.next())) >> dice.below(32);
+}
+std::int32_t between(Dice& dice, std::int32_t low, std::int32_t high) {
+    return low + static_cast<std::int32_t>(
+                     dice.below(static_cast<std::uint64_t>(std::int64_t{high} - low + 1)));
+}
+
+template <std::size_t kCount>
+void fill(std::int32_t (&values)[kCount], Dice& dice) {
+    for (std::int32_t& value : values) {
+        value = any(dice);
+    }
+}
+template <std::size_t kRows, std::size_t kCount>
+void fill(std::int32_t (&rows)[kRows][kCount], Dice& dice) {
+    for (auto& row : rows) {
+        fill(row, dice);
+    }
+}
+void fill(ContactBlock::Row& row, Dice& dice) {
+    fill(row.jacobian_a, dice);
+    fill(row.jacobian_b, dice);
+    fill(row.response_a, dice);
+    fill(row.response_b, dice);
+    fill(row.mass, dice);
+}
+
+/// What a block's passes rely on: no impulse of a point that a lane does not have, none negative,
+/// no twist on one point.
+void keep_promises(ContactBlock& block, Dice& dice) {
+    for (int lane = 0; lane < kBlockLanes; ++lane) {
+        block.impulse_max[lane] = between(dice, 0, 1 << 28);
+        block.friction[lane] = between(dice, 0, 4 << kCoefficientFraction >> 1);
+        for (int index = 0; index < static_cast<int>(kBlockPoints); ++index) {
+            ContactBlock::Point& point = block.point[index];
+            const bool exists = index < block.point_count[lane];
+            point.impulse[lane] = exists ? between(dice, 0, block.impulse_max[lane]) : 0;
+            point.row.mass[lane] = exists ? point.row.mass[lane] : 0;
+            const bool twists = exists && block.point_count[lane] > 1;
+            point.lever[lane] = twists ? between(dice, 0, 7 << kCoefficientFraction) : 0;
+        }
+        if (block.point_count[lane] == 1) {
+            block.twist_impulse[lane] = 0;
+        }
+    }
+}
+
+/// Eight contacts of sixteen bodies.
+void draw_block(ContactBlock& block, Dice& dice) {
+    block.lane_count = kBlockLanes;
+    block.point_count_max = 0;
+    const auto most = static_cast<std::uint64_t>(between(dice, 1, 4));
+    for (int lane = 0; lane < kBlockLanes; ++lane) {
+        block.row_a[lane] = static_cast<BodyRow>(2 * lane);
+        block.row_b[lane] = static_cast<BodyRow>(2 * lane + 1);
+        block.point_count[lane] = static_cast<std::int32_t>(1 + dice.below(most));
+        block.point_count_max = std::max(block.point_count_max, block.point_count[lane]);
+    }
+    fill(block.normal, dice);
+    fill(block.tangent[0], dice);
+    fill(block.tangent[1], dice);
+    fill(block.coupling, dice);
+    for (auto* lanes : {&block.share_a,
+                        &block.share_b,
+                        &block.mass_scale,
+                        &block.impulse_scale,
+                        &block.bias_rate,
+                        &block.tangent_coupling,
+                        &block.twist_lever_a,
+                        &block.twist_lever_b,
+                        &block.twist_mass,
+                        &block.twist_impulse}) {
+        fill(*lanes, dice);
+    }
+    for (ContactBlock::Point& point : block.point) {
+        fill(point.row, dice);
+        fill(point.separation, dice);
+    }
+    fill(block.tangent_row[0], dice);
+    fill(block.tangent_row[1], dice);
+    fill(block.twist_response_a, dice);
+    fill(block.twist_response_b, dice);
+    fill(block.friction_impulse, dice);
+    keep_promises(block, dice);
+}
+
+using Bodies = std::array<SolverBody, kBodies>;
+
+void draw_bodies(Bodies& bodies, Dice& dice) {
+    for (SolverBody& body : bodies) {
+        fill(body.linear, dice);
+        fill(body.angular, dice);
+        fill(body.linear_moved, dice);
+        fill(body.angular_moved, dice);
+    }
+}
+
+/// All that a pass may write, of the points that there are.
+void expect_same(const ContactBlock& block, const ContactBlock& other) {
+    for (int lane = 0; lane < kBlockLanes; ++lane) {
+        for (int point = 0; point < block.point_count[lane]; ++point) {
+            ASSERT_EQ(block.point[point].impulse[lane], other.point[point].impulse[lane]);
+            ASSERT_EQ(block.point[point].separation[lane], other.point[point].separation[lane]);
+        }
+        ASSERT_EQ(block.friction_impulse[0][lane], other.friction_impulse[0][lane]);
+        ASSERT_EQ(block.friction_impulse[1][lane], other.friction_impulse[1][lane]);
+        ASSERT_EQ(block.twist_impulse[lane], other.twist_impulse[lane]);
+    }
+}
+
+class SimdTest : public ::testing::TestWithParam<Simd> {
+protected:
+    void SetUp() override {
+        if (!is_available(GetParam())) {
+            GTEST_SKIP() << to_string(GetParam()) << " is not available here";
+        }
+    }
+};
+
+INSTANTIATE_TEST_SUITE_P(Kernels,
+                         SimdTest,
+                         ::testing::Values(Simd::sse4, Simd::avx2, Simd::avx512, Simd::neon),
+                         [](const auto& test) { return std::string(to_string(test.param)); });
+
+TEST_P(SimdTest, PassesOfRandomBlocksAreThoseOfScalarLanes) {
+    const ContactKernels scalar = contact_kernels(Simd::scalar);
+    const ContactKernels wide = contact_kernels(GetParam());
+    Dice dice(11);
+    auto block = std::make_unique<ContactBlock>();
+    auto other = std::make_unique<ContactBlock>();
+    int cones = 0;
+    for (int trial = 0; trial < 4000; ++trial) {
+        draw_block(*block, dice);
+        *other = *block;
+        Bodies bodies{};
+        draw_bodies(bodies, dice);
+        Bodies others = bodies;
+        const auto friction = block->friction_impulse[0][0];
+        for (const auto pass :
+             {&ContactKernels::warm_start, &ContactKernels::solve, &ContactKernels::relax}) {
+            (scalar.*pass)({block.get(), 1}, bodies.data());
+            (wide.*pass)({other.get(), 1}, others.data());
+            ASSERT_NO_FATAL_FAILURE(expect_same(*block, *other)) << "trial " << trial;
+            ASSERT_EQ(std::memcmp(bodies.data(), others.data(), sizeof bodies), 0) << trial;
+        }
+        cones += block->friction_impulse[0][0] != friction ? 1 : 0;
+    }
+    EXPECT_GT(cones, 1000);
+}
+
+/// A manifold and bodies as bodies of any shape and place might bring them.
+struct PairDraw {
+    std::array<Manifold, kBlockLanes> manifolds{};
+    std::array<BodyTerms, kBodies> bodies{};
+    PairTerms terms{};
+
+    void draw(ContactBlock& block, Dice& dice) {
+        for (BodyTerms& body : bodies) {
+            for (int entry = 0; entry < kBodyTermCount; ++entry) {
+                body.entry[entry] = between(dice, -(1 << 29), 1 << 29);
+            }
+            body.inverse_gyration_radius() = between(dice, 0, 100 << kEffectiveMassFraction);
+        }
+        fill(terms.centre_delta, dice);
+        for (int lane = 0; lane < kBlockLanes; ++lane) {
+            Manifold& manifold = manifolds[static_cast<std::size_t>(lane)];
+            fill(manifold.normal, dice);
+            fill(manifold.tangent, dice);
+            fill(manifold.centre_delta, dice);
+            fill(manifold.separation, dice);
+            fill(manifold.anchor_a, dice);
+            fill(manifold.local_a, dice);
+            fill(manifold.local_b, dice);
+            terms.manifold[lane] = &manifold;
+            terms.body_a[lane] = &bodies[block.row_a[lane]];
+            terms.body_b[lane] = &bodies[block.row_b[lane]];
+            terms.inverse_radius_min[lane] = between(dice, 0, 100 << kEffectiveMassFraction);
+            terms.lever_max[lane] = between(dice, 0, 100 << kLengthFraction);
+        }
+    }
+};
+
+void expect_same(const ContactBlock::Row& row, const ContactBlock::Row& other, int lane) {
+    for (int axis = 0; axis < 3; ++axis) {
+        ASSERT_EQ(row.jacobian_a[axis][lane], other.jacobian_a[axis][lane]);
+        ASSERT_EQ(row.jacobian_b[axis][lane], other.jacobian_b[axis][lane]);
+        ASSERT_EQ(row.response_a[axis][lane], other.response_a[axis][lane]);
+        ASSERT_EQ(row.response_b[axis][lane], other.response_b[axis][lane]);
+    }
+    ASSERT_EQ(row.mass[lane], other.mass[lane]);
+}
+
+void expect_same_preparation(const ContactBlock& block, const ContactBlock& other, int lane) {
+    for (int point = 0; point < block.point_count[lane]; ++point) {
+        const ContactBlock::Point& p = block.point[point];
+        ASSERT_NO_FATAL_FAILURE(expect_same(p.row, other.point[point].row, lane));
+        ASSERT_EQ(p.separation[lane], other.point[point].separation[lane]);
+        ASSERT_EQ(p.lever[lane], other.point[point].lever[lane]);
+        for (int before = 0; before < point; ++before) {
+            const int index = coupling_index(point, before);
+            ASSERT_EQ(block.coupling[index][lane], other.coupling[index][lane]);
+        }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        ASSERT_EQ(block.normal[axis][lane], other.normal[axis][lane]);
+        ASSERT_EQ(block.tangent[0][axis][lane], other.tangent[0][axis][lane]);
+        ASSERT_EQ(block.tangent[1][axis][lane], other.tangent[1][axis][lane]);
+        ASSERT_EQ(block.twist_response_a[axis][lane], other.twist_response_a[axis][lane]);
+        ASSERT_EQ(block.twist_response_b[axis][lane], other.twist_response_b[axis][lane]);
+    }
+    ASSERT_NO_FATAL_FAILURE(expect_same(block.tangent_row[0], other.tangent_row[0], lane));
+    ASSERT_NO_FATAL_FAILURE(expect_same(block.tangent_row[1], other.tangent_row[1], lane));
+    ASSERT_EQ(block.tangent_coupling[lane], other.tangent_coupling[lane]);
+    ASSERT_EQ(block.twist_mass[lane], other.twist_mass[lane]);
+}
+
+TEST_P(SimdTest, PreparesRandomContactsAsScalarLanesDo) {
+    const ContactKernels scalar = contact_kernels(Simd::scalar);
+    const ContactKernels wide = contact_kernels(GetParam());
+    Dice dice(12);
+    auto block = std::make_unique<ContactBlock>();
+    auto other = std::make_unique<ContactBlock>();
+    PairDraw pairs;
+    for (int trial = 0; trial < 4000; ++trial) {
+        draw_block(*block, dice);
+        pairs.draw(*block, dice);
+        *other = *block;
+        const std::int32_t rate = between(dice, 10, 3840);
+        const std::int32_t separation_max = between(dice, 1, 4 << kLengthFraction);
+        scalar.prepare(pairs.terms, rate, separation_max, *block);
+        wide.prepare(pairs.terms, rate, separation_max, *other);
+        for (int lane = 0; lane < kBlockLanes; ++lane) {
+            ASSERT_NO_FATAL_FAILURE(expect_same_preparation(*block, *other, lane))
+                << "trial " << trial << ", lane " << lane;
+        }
+    }
+}
+
+TEST(Simd, TheBestOneIsAvailable) {
+    EXPECT_TRUE(is_available(Simd::scalar));
+    EXPECT_TRUE(is_available(best_simd()));
+    std::cout << "best: " << to_string(best_simd()) << "\n";
+}
+
+} // namespace
+} // namespace lockwind
