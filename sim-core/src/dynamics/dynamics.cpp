@@ -3,9 +3,9 @@
 #include "dynamics/body_frame.h"
 #include "dynamics/broad_phase.h"
 #include "dynamics/contact_kernel_choice.h"
-#include "dynamics/contact_solver.h"
 #include "dynamics/manifold_slots.h"
 #include "dynamics/narrow_phase.h"
+#include "dynamics/solver.h"
 
 #include <algorithm>
 #include <vector>
@@ -24,7 +24,7 @@ struct Dynamics::Impl {
     ManifoldSlots slots;
     BroadPhase broad;
     NarrowPhase narrow;
-    ContactSolver solver;
+    Solver solver;
     std::vector<ContactChange> changes;
 };
 

@@ -1,7 +1,7 @@
 #include "dynamics/broad_phase.h"
 #include "dynamics/contact_kernel_choice.h"
-#include "dynamics/contact_solver.h"
 #include "dynamics/narrow_phase.h"
+#include "dynamics/solver.h"
 #include "tests/unit/dynamics/dynamics_bench.h"
 
 #include <array>
@@ -149,7 +149,7 @@ class SolverRun {
 public:
     explicit SolverRun(const ContactKernels& kernels) : settings_(make_settings()) {
         frames_ = std::make_unique<BodyFrames>(settings_.body_capacity);
-        solver_ = std::make_unique<ContactSolver>(settings_, kernels);
+        solver_ = std::make_unique<Solver>(settings_, kernels);
         add_mixed_heap(bench_);
     }
     void step() {
@@ -175,7 +175,7 @@ private:
     DynamicsSettings settings_;
     DynamicsBench bench_;
     std::unique_ptr<BodyFrames> frames_;
-    std::unique_ptr<ContactSolver> solver_;
+    std::unique_ptr<Solver> solver_;
 };
 
 /// Steps the heap with scalar kernels and with others.

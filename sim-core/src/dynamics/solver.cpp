@@ -1,0 +1,36 @@
+#include "dynamics/solver.h"
+
+namespace lockwind {
+
+Solver::Solver(const DynamicsSettings& settings, const ContactKernels& kernels)
+    : constants_(make_step_constants(settings)), bodies_(settings.body_capacity),
+      contacts_(settings, kernels) {}
+
+void Solver::solve(const DynamicsTables& tables, std::uint32_t tick, const BodyFrames& frames) {
+    bodies_.read(constants_, tables, frames);
+    contacts_.prepare(constants_, tables, frames, bodies_);
+    for (std::uint32_t substep = 0; substep < constants_.substeps; ++substep) {
+        bodies_.integrate_velocities(constants_, substep);
+        if (substep == 0) {
+            contacts_.warm_start(bodies_);
+        }
+        contacts_.solve(bodies_);
+        bodies_.integrate_positions(constants_);
+        contacts_.relax(bodies_);
+    }
+    contacts_.write(tables);
+    bodies_.write(constants_, tables, tick);
+}
+
+void Solver::restitution(const DynamicsTables& tables) {
+    if (!contacts_.has_impacts()) {
+        return;
+    }
+    // The arena's velocities count, not what the solver left in its own.
+    bodies_.read_velocities(tables);
+    contacts_.bounce(tables, bodies_);
+    bodies_.write_velocities(constants_, tables);
+    contacts_.list_hits(tables);
+}
+
+} // namespace lockwind

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "dynamics/contact_kernels.h"
+#include "dynamics/contact_solver.h"
+#include "dynamics/dynamics.h"
+#include "dynamics/solver_bodies.h"
+#include "dynamics/step_constants.h"
+
+#include <cstdint>
+#include <span>
+
+namespace lockwind {
+
+/// The substeps of a tick, and restitution after them: soft step, Catto, "Solver2D", 2024.
+class Solver {
+public:
+    explicit Solver(const DynamicsSettings& settings,
+                    const ContactKernels& kernels = kernels_of<ScalarLanes>());
+    void solve(const DynamicsTables& tables, std::uint32_t tick, const BodyFrames& frames);
+    void restitution(const DynamicsTables& tables);
+    std::span<const ContactHit> hits() const { return contacts_.hits(); }
+
+private:
+    StepConstants constants_;
+    SolverBodies bodies_;
+    ContactSolver contacts_;
+};
+
+} // namespace lockwind

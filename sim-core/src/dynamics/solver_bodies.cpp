@@ -1,0 +1,181 @@
+#include "dynamics/solver_bodies.h"
+
+#include "dynamics/solver_format.h"
+
+#include "lockwind/integer.h"
+#include "lockwind/overflow.h"
+#include "lockwind/world_definition.h"
+
+#include <algorithm>
+
+namespace lockwind {
+
+namespace {
+
+constexpr auto kDynamic = static_cast<std::uint8_t>(BodyMode::dynamic);
+constexpr auto kFixed = static_cast<std::uint8_t>(BodyMode::fixed);
+
+/// The world-frame inverse inertia R diag(principal) R^T, Q5.26, upper triangle by rows.
+void turn_inertia(const std::int32_t rotation[9],
+                  const std::int32_t principal[3],
+                  std::int32_t out[6]) {
+    if (principal[0] == principal[1] && principal[1] == principal[2]) {
+        const std::int32_t isotropic[6] = {principal[0], 0, 0, principal[0], 0, principal[0]};
+        std::copy(isotropic, isotropic + 6, out);
+        return;
+    }
+    int entry = 0;
+    for (int row = 0; row < 3; ++row) {
+        std::int32_t scaled[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            scaled[axis] =
+                round_unit(static_cast<std::int64_t>(rotation[3 * row + axis]) * principal[axis]);
+        }
+        for (int column = row; column < 3; ++column) {
+            out[entry++] = round_unit(dot_wide(scaled, rotation + 3 * column));
+        }
+    }
+}
+
+void read_terms(const BodyFrame& frame, const BodyProperties& body, BodyTerms& terms) {
+    std::copy(frame.rotation, frame.rotation + 9, terms.rotation());
+    const bool moves = body.mode != kFixed;
+    terms.inverse_gyration_radius() = moves ? body.inverse_gyration_radius : 0;
+    if (body.mode == kDynamic) {
+        turn_inertia(frame.rotation, body.inverse_inertia, terms.inverse_inertia());
+    } else {
+        std::fill_n(terms.inverse_inertia(), 6, 0);
+    }
+}
+
+} // namespace
+
+SolverBodies::SolverBodies(std::uint32_t capacity)
+    : padding_row_(capacity), bodies_(std::size_t{capacity} + 1), terms_(capacity),
+      courses_(capacity), speed_bound_(capacity) {
+    dynamic_rows_.reserve(capacity);
+    kinematic_rows_.reserve(capacity);
+}
+
+void SolverBodies::read(const StepConstants& constants,
+                        const DynamicsTables& tables,
+                        const BodyFrames& frames) {
+    dynamic_rows_.clear();
+    kinematic_rows_.clear();
+    const std::uint32_t count = tables.motion.count();
+    for (BodyRow row = 0; row < count; ++row) {
+        const BodyProperties& body = tables.properties[row];
+        read_terms(frames[row], body, terms_[row]);
+        read_body(constants, tables.motion[row], body, row);
+    }
+}
+
+void SolverBodies::read_body(const StepConstants& constants,
+                             const BodyMotion& motion,
+                             const BodyProperties& body,
+                             BodyRow row) {
+    SolverBody& solver = bodies_[row];
+    Course& course = courses_[row];
+    solver = SolverBody{};
+    course.travel = BodyTravel{};
+    speed_bound_[row] = 0;
+    if (body.mode == kFixed) {
+        return;
+    }
+    const std::int32_t linear_max = constants.linear_speed_max;
+    const std::int32_t angular_max = angular_speed_max(constants, body.gyration_radius);
+    std::int64_t bound = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        solver.linear[axis] = std::clamp(motion.linear_velocity[axis], -linear_max, linear_max);
+        solver.angular[axis] = std::clamp(motion.angular_velocity[axis], -angular_max, angular_max);
+        bound += magnitude(std::int64_t{solver.linear[axis]});
+        // No point of a body is farther out than 8 gyration radii.
+        bound += 8 * magnitude(std::int64_t{solver.angular[axis]});
+    }
+    speed_bound_[row] = raw_saturate<std::int32_t>(bound >> 1);
+    if (body.mode == kDynamic) {
+        dynamic_rows_.push_back(row);
+        course.angular_speed_max = angular_max;
+        return;
+    }
+    kinematic_rows_.push_back(row);
+    for (int axis = 0; axis < 3; ++axis) {
+        solver.linear_moved[axis] = solver.linear[axis];
+        solver.angular_moved[axis] = solver.angular[axis];
+        course.travel.linear[axis] = std::int64_t{solver.linear[axis]} * constants.substeps;
+        course.travel.angular[axis] = std::int64_t{solver.angular[axis]} * constants.substeps;
+    }
+}
+
+void SolverBodies::integrate_velocities(const StepConstants& constants, std::uint32_t substep) {
+    const std::int32_t* gravity = constants.gravity[substep];
+    for (const BodyRow row : dynamic_rows_) {
+        SolverBody& body = bodies_[row];
+        Course& course = courses_[row];
+        for (int axis = 0; axis < 3; ++axis) {
+            const std::int32_t linear_change =
+                substep == 0 ? 0 : raw_subtract(body.linear[axis], course.linear_free[axis]);
+            const std::int32_t angular_change =
+                substep == 0 ? 0 : raw_subtract(body.angular[axis], course.angular_free[axis]);
+            course.linear_free[axis] = raw_add(body.linear[axis], gravity[axis]);
+            course.angular_free[axis] = body.angular[axis];
+            body.linear[axis] = raw_add(course.linear_free[axis], linear_change);
+            body.angular[axis] = raw_add(course.angular_free[axis], angular_change);
+        }
+    }
+}
+
+void SolverBodies::integrate_positions(const StepConstants& constants) {
+    const std::int32_t linear_max = constants.linear_speed_max;
+    for (const BodyRow row : dynamic_rows_) {
+        SolverBody& body = bodies_[row];
+        Course& course = courses_[row];
+        const std::int32_t angular_max = course.angular_speed_max;
+        for (int axis = 0; axis < 3; ++axis) {
+            body.linear[axis] = std::clamp(body.linear[axis], -linear_max, linear_max);
+            body.angular[axis] = std::clamp(body.angular[axis], -angular_max, angular_max);
+            body.linear_moved[axis] = body.linear[axis];
+            body.angular_moved[axis] = body.angular[axis];
+            course.travel.linear[axis] += body.linear[axis];
+            course.travel.angular[axis] += body.angular[axis];
+        }
+    }
+}
+
+void SolverBodies::write(const StepConstants& constants,
+                         const DynamicsTables& tables,
+                         std::uint32_t tick) {
+    for (const BodyRow row : dynamic_rows_) {
+        BodyMotion& motion = tables.motion[row];
+        const BodyProperties& body = tables.properties[row];
+        std::copy(bodies_[row].linear, bodies_[row].linear + 3, motion.linear_velocity);
+        std::copy(bodies_[row].angular, bodies_[row].angular + 3, motion.angular_velocity);
+        move_body(constants, courses_[row].travel, body, tick, motion);
+        clamp_velocities(constants, body, motion);
+    }
+    for (const BodyRow row : kinematic_rows_) {
+        move_body(
+            constants, courses_[row].travel, tables.properties[row], tick, tables.motion[row]);
+    }
+}
+
+void SolverBodies::read_velocities(const DynamicsTables& tables) {
+    for (const std::vector<BodyRow>* rows : {&dynamic_rows_, &kinematic_rows_}) {
+        for (const BodyRow row : *rows) {
+            const BodyMotion& motion = tables.motion[row];
+            std::copy(motion.linear_velocity, motion.linear_velocity + 3, bodies_[row].linear);
+            std::copy(motion.angular_velocity, motion.angular_velocity + 3, bodies_[row].angular);
+        }
+    }
+}
+
+void SolverBodies::write_velocities(const StepConstants& constants, const DynamicsTables& tables) {
+    for (const BodyRow row : dynamic_rows_) {
+        BodyMotion& motion = tables.motion[row];
+        std::copy(bodies_[row].linear, bodies_[row].linear + 3, motion.linear_velocity);
+        std::copy(bodies_[row].angular, bodies_[row].angular + 3, motion.angular_velocity);
+        clamp_velocities(constants, tables.properties[row], motion);
+    }
+}
+
+} // namespace lockwind

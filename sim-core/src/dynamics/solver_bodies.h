@@ -1,0 +1,64 @@
+#pragma once
+
+#include "dynamics/body_frame.h"
+#include "dynamics/body_integration.h"
+#include "dynamics/contact_block.h"
+#include "dynamics/dynamics.h"
+#include "dynamics/step_constants.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lockwind {
+
+/// The bodies of a tick while its substeps run: read from the arena, moved, written back. All
+/// members are scratch of one tick.
+class SolverBodies {
+public:
+    explicit SolverBodies(std::uint32_t capacity);
+
+    void
+    read(const StepConstants& constants, const DynamicsTables& tables, const BodyFrames& frames);
+    /// Gravity, and what the constraints did in the substep before: that is a later substep's warm
+    /// start.
+    void integrate_velocities(const StepConstants& constants, std::uint32_t substep);
+    void integrate_positions(const StepConstants& constants);
+    void write(const StepConstants& constants, const DynamicsTables& tables, std::uint32_t tick);
+
+    /// The arena's velocities as they are now, and back: what happens after the substeps counts
+    /// from them.
+    void read_velocities(const DynamicsTables& tables);
+    void write_velocities(const StepConstants& constants, const DynamicsTables& tables);
+
+    /// By row; one more at rest, of the lanes without a contact.
+    SolverBody* bodies() { return bodies_.data(); }
+    BodyRow padding_row() const { return padding_row_; }
+    const BodyTerms& terms(BodyRow row) const { return terms_[row]; }
+    /// Q11.20 m/s at the tick's start, of any point of the body.
+    std::int32_t speed_bound(BodyRow row) const { return speed_bound_[row]; }
+
+private:
+    /// Velocities before the constraints' impulses of a substep, and the substeps' sum.
+    struct Course {
+        std::int32_t linear_free[4];
+        std::int32_t angular_free[4];
+        BodyTravel travel;
+        std::int32_t angular_speed_max;
+    };
+
+    void read_body(const StepConstants& constants,
+                   const BodyMotion& motion,
+                   const BodyProperties& body,
+                   BodyRow row);
+
+    BodyRow padding_row_;
+    std::vector<SolverBody> bodies_;
+    std::vector<BodyTerms> terms_;
+    std::vector<Course> courses_;
+    std::vector<std::int32_t> speed_bound_;
+    std::vector<BodyRow> dynamic_rows_;
+    std::vector<BodyRow> kinematic_rows_;
+};
+
+} // namespace lockwind
