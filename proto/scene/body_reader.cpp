@@ -232,6 +232,7 @@ void BodyReader::read_matter(const scene_text::Body& body,
         reader.fail("mass", "and density are both given; give one");
     }
     definition.mass = reader.real("mass", 0, kMass);
+    definition.can_sleep = !body.has_can_sleep() || body.can_sleep();
     check_mass(reader, definition);
 }
 

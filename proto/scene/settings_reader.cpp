@@ -18,6 +18,8 @@ WorldSettings read_settings(const FieldReader& scene, const SceneOptions& option
         reader.real("linear_speed_max", settings.linear_speed_max, {1, 1000, "m/s"});
     settings.angular_speed_max =
         reader.real("angular_speed_max", settings.angular_speed_max, {1, 200, "rad/s"});
+    settings.sleep_speed = reader.real("sleep_speed", settings.sleep_speed, {0, 10, "m/s"});
+    settings.sleep_seconds = reader.real("sleep_seconds", settings.sleep_seconds, {0, 60, "s"});
     settings.bounds = reader.real("bounds", settings.bounds, {1, 16'000, "m"});
     settings.body_capacity = reader.count("body_capacity", 0, kCapacity);
     settings.pair_capacity = reader.count("pair_capacity", 0, kCapacity);

@@ -14,6 +14,8 @@ enum class EventType : std::uint8_t {
     destroyed = 4,     // a: the body, b: 0
     score = 5,         // a: the scoring pod, b: the pod that was hit; value: a's score
     respawned = 6,     // a: a pod put back at its start because it left the bounds, b: 0
+    fell_asleep = 7,   // a: the body, b: 0
+    woke = 8,          // a: the body, b: 0
 };
 
 /// Something that happened in a tick. A tick's events are ordered by (type, a, b, value).

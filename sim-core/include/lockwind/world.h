@@ -30,6 +30,7 @@ struct BodyView {
     Vec3 linear_velocity;  // m/s
     Vec3 angular_velocity; // rad/s
     Real mass;             // kg; 0 unless dynamic
+    bool asleep;           // fixed bodies are, and kinematic ones that do not move
 };
 
 struct RayHit {
@@ -42,6 +43,7 @@ struct RayHit {
 /// Counts of a state, for progress, metrics and the vacuity checks of tests.
 struct WorldCounts {
     std::uint32_t bodies;
+    std::uint32_t awake;    // dynamic bodies that are
     std::uint32_t pairs;    // overlapping fat bounds
     std::uint32_t contacts; // contact points in touching manifolds
     std::uint32_t manifolds;

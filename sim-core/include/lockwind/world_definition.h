@@ -27,6 +27,7 @@ struct BodyDefinition {
     Real mass = 0.0;        // kg; overrides density where > 0
     Real friction = 0.5;    // Coulomb; a pair uses the geometric mean
     Real restitution = 0.0; // a pair uses the larger
+    bool can_sleep = true;  // false keeps what it touches awake too
 };
 
 /// A player-controlled body: thrust along its +z, turn about y, jump, shoot a ball.
@@ -49,6 +50,8 @@ struct WorldSettings {
     Vec3 gravity{0, -9.81, 0};       // m/s^2
     Real linear_speed_max = 400.0;   // m/s
     Real angular_speed_max = 100.0;  // rad/s
+    Real sleep_speed = 0.05;         // m/s, of any point of a body that counts as still
+    Real sleep_seconds = 0.5;        // still for so long, an island sleeps; 0: none ever does
     Real bounds = 1000.0;            // m from the origin; dynamic bodies outside are destroyed
     std::uint64_t seed = 1;
     // Capacities; 0 derives one from the bodies of the scene.

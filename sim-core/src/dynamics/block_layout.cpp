@@ -25,11 +25,12 @@ Colouring::Colouring(std::uint32_t body_capacity, std::uint32_t pair_capacity)
     contacts_.reserve(pair_capacity);
 }
 
-void Colouring::run(const DynamicsTables& tables) {
+void Colouring::run(const DynamicsTables& tables, const Activity& activity) {
     contacts_.clear();
-    std::fill(used_.begin(), used_.end(), 0U);
-    const std::uint32_t count = tables.pairs.count();
-    for (std::uint32_t index = 0; index < count; ++index) {
+    for (const BodyRow row : activity.rows()) {
+        used_[row] = 0;
+    }
+    for (const std::uint32_t index : activity.pairs()) {
         const Pair& pair = tables.pairs[index];
         if (!is_solvable(pair, tables)) {
             continue;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "dynamics/activity.h"
 #include "dynamics/contact_block.h"
 #include "dynamics/dynamics.h"
 
@@ -27,11 +28,11 @@ struct ColouredContact {
 class Colouring {
 public:
     Colouring(std::uint32_t body_capacity, std::uint32_t pair_capacity);
-    void run(const DynamicsTables& tables);
+    void run(const DynamicsTables& tables, const Activity& activity);
     std::span<const ColouredContact> contacts() const { return contacts_; }
 
 private:
-    std::vector<std::uint64_t> used_; // a bit for each colour, by body
+    std::vector<std::uint64_t> used_; // a bit for each colour, by body; of those that are awake
     std::vector<ColouredContact> contacts_;
 };
 

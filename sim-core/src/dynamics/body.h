@@ -36,11 +36,22 @@ struct BodyProperties {
     std::int32_t restitution;        // Q3.28
     std::uint8_t mode;               // BodyMode
     std::uint8_t shape;              // ShapeType
-    std::uint8_t zero[2];
+    std::uint8_t can_sleep;          // 0, 1
+    std::uint8_t zero;
     std::uint32_t spawn_count;  // bodies this one has spawned
     std::uint32_t despawn_tick; // low 32 bits of the tick that destroys it; 0 for never
 };
 static_assert(sizeof(BodyProperties) == 64);
+
+/// Whether a body rests: row of "body_sleep", same row as its BodyMotion. Apart and narrow, so that
+/// a step sees at a glance who is awake.
+struct BodySleep {
+    std::uint16_t still_ticks; // for how many it has been slow; at most 65535
+    std::uint8_t asleep; // 0, 1: no phase moves it. Fixed bodies sleep too, and kinematic ones
+                         // that do not move
+    std::uint8_t zero;
+};
+static_assert(sizeof(BodySleep) == 4);
 
 inline constexpr std::array kBodyMotionFields{
     LOCKWIND_FIELD(BodyMotion, id, 0, "", ""),
@@ -64,9 +75,16 @@ inline constexpr std::array kBodyPropertiesFields{
     LOCKWIND_FIELD(BodyProperties, restitution, 28, "", ""),
     LOCKWIND_FIELD(BodyProperties, mode, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, shape, 0, "", ""),
+    LOCKWIND_FIELD(BodyProperties, can_sleep, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, zero, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, spawn_count, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, despawn_tick, 0, "tick", ""),
+};
+
+inline constexpr std::array kBodySleepFields{
+    LOCKWIND_FIELD(BodySleep, still_ticks, 0, "ticks", ""),
+    LOCKWIND_FIELD(BodySleep, asleep, 0, "", ""),
+    LOCKWIND_FIELD(BodySleep, zero, 0, "", ""),
 };
 
 } // namespace lockwind

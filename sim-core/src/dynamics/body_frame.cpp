@@ -42,9 +42,8 @@ void make_frame(BodyFrame& frame, const BodyMotion& motion, const BodyProperties
 
 BodyFrames::BodyFrames(std::uint32_t capacity) : frames_(capacity) {}
 
-void BodyFrames::refresh(const DynamicsTables& tables) {
-    const std::uint32_t count = tables.motion.count();
-    for (BodyRow row = 0; row < count; ++row) {
+void BodyFrames::refresh(const DynamicsTables& tables, std::span<const BodyRow> rows) {
+    for (const BodyRow row : rows) {
         if (!is_current(frames_[row], tables.motion[row], tables.properties[row])) {
             make_frame(frames_[row], tables.motion[row], tables.properties[row]);
         }

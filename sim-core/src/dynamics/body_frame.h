@@ -4,6 +4,7 @@
 #include "geometry/shape_instance.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace lockwind {
@@ -18,11 +19,11 @@ struct BodyFrame {
     ShapeInstance shape;          // `rotation` points into this frame
 };
 
-/// Frames of all rows, recomputed where orientation, size or shape differ from the key.
+/// Frames by row, recomputed where orientation, size or shape differ from the key.
 class BodyFrames {
 public:
     explicit BodyFrames(std::uint32_t capacity);
-    void refresh(const DynamicsTables& tables);
+    void refresh(const DynamicsTables& tables, std::span<const BodyRow> rows);
     void drop();
     const BodyFrame& operator[](BodyRow row) const { return frames_[row]; }
 

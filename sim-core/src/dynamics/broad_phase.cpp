@@ -76,20 +76,31 @@ Bounds BroadPhase::fat_bounds(const Bounds& tight, const BodyMotion& motion, boo
     return fat;
 }
 
-void BroadPhase::update_bounds(const DynamicsTables& tables, const BodyFrames& frames) {
+void BroadPhase::update_bounds(const DynamicsTables& tables,
+                               const BodyFrames& frames,
+                               std::span<const BodyRow> awake) {
+    for (const BodyRow row : moved_) {
+        is_moved_[row] = 0;
+    }
     moved_.clear();
-    const std::uint32_t count = tables.motion.count();
-    for (BodyRow row = 0; row < count; ++row) {
+    for (const BodyRow row : awake) {
         const BodyMotion& motion = tables.motion[row];
         const Bounds tight = tight_bounds(frames[row], motion);
-        bounds_[row] = stored_bounds(motion);
-        is_moved_[row] = contains(bounds_[row], tight) ? 0 : 1;
-        if (is_moved_[row] == 0) {
+        if (contains(stored_bounds(motion), tight)) {
             continue;
         }
+        is_moved_[row] = 1;
         moved_.push_back(row);
         const bool moves = tables.properties[row].mode != kFixed;
         bounds_[row] = tight == kUnbounded ? kUnbounded : fat_bounds(tight, motion, moves);
+    }
+}
+
+void BroadPhase::read_unmoved_bounds(const DynamicsTables& tables) {
+    for (BodyRow row = 0; row < tables.motion.count(); ++row) {
+        if (is_moved_[row] == 0) {
+            bounds_[row] = stored_bounds(tables.motion[row]);
+        }
     }
 }
 
@@ -148,12 +159,14 @@ void BroadPhase::merge_new_pairs(const Table<Pair>& pairs, const std::vector<Key
 
 StepFault BroadPhase::run(const DynamicsTables& tables,
                           const BodyFrames& frames,
+                          std::span<const BodyRow> awake,
                           ManifoldSlots& slots,
                           std::vector<ContactChange>& changes) {
-    update_bounds(tables, frames);
+    update_bounds(tables, frames, awake);
     if (moved_.empty()) {
         return StepFault::none;
     }
+    read_unmoved_bounds(tables);
     const std::uint32_t body_count = tables.motion.count();
     const std::uint32_t pair_count = tables.pairs.count();
     std::uint32_t gone = 0;

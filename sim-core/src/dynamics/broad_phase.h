@@ -6,6 +6,7 @@
 #include "dynamics/manifold_slots.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace lockwind {
@@ -20,6 +21,7 @@ public:
     /// changed.
     StepFault run(const DynamicsTables& tables,
                   const BodyFrames& frames,
+                  std::span<const BodyRow> awake,
                   ManifoldSlots& slots,
                   std::vector<ContactChange>& changes);
 
@@ -30,7 +32,10 @@ private:
         auto operator<=>(const Key&) const = default;
     };
 
-    void update_bounds(const DynamicsTables& tables, const BodyFrames& frames);
+    void update_bounds(const DynamicsTables& tables,
+                       const BodyFrames& frames,
+                       std::span<const BodyRow> awake);
+    void read_unmoved_bounds(const DynamicsTables& tables);
     Bounds fat_bounds(const Bounds& tight, const BodyMotion& motion, bool moves) const;
     bool find_new_pairs(const DynamicsTables& tables);
     bool is_gone(const Pair& pair, std::uint32_t body_count) const;

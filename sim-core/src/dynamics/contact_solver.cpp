@@ -155,9 +155,10 @@ ContactSolver::ContactSolver(const DynamicsSettings& settings, const ContactKern
 void ContactSolver::prepare(const StepConstants& constants,
                             const DynamicsTables& tables,
                             const BodyFrames& frames,
+                            const Activity& activity,
                             SolverBodies& bodies) {
     hits_.clear();
-    colouring_.run(tables);
+    colouring_.run(tables, activity);
     layout_.run(tables, colouring_.contacts());
     fill_blocks(constants, tables, frames, bodies);
     find_impacts(bodies);

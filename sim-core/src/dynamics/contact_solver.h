@@ -23,6 +23,7 @@ public:
     void prepare(const StepConstants& constants,
                  const DynamicsTables& tables,
                  const BodyFrames& frames,
+                 const Activity& activity,
                  SolverBodies& bodies);
     void warm_start(SolverBodies& bodies) { run(&ContactKernels::warm_start, bodies); }
     void solve(SolverBodies& bodies) { run(&ContactKernels::solve, bodies); }

@@ -1,11 +1,15 @@
 #include "dynamics/dynamics.h"
 
+#include "dynamics/activity.h"
 #include "dynamics/body_frame.h"
 #include "dynamics/broad_phase.h"
 #include "dynamics/contact_kernel_choice.h"
 #include "dynamics/manifold_slots.h"
 #include "dynamics/narrow_phase.h"
+#include "dynamics/sleep.h"
 #include "dynamics/solver.h"
+
+#include "lockwind/world_definition.h"
 
 #include <algorithm>
 #include <vector>
@@ -14,17 +18,30 @@ namespace lockwind {
 
 struct Dynamics::Impl {
     Impl(const DynamicsSettings& settings, Simd simd)
-        : frames(settings.body_capacity), slots(settings.manifold_capacity), broad(settings),
-          narrow(settings.body_capacity), solver(settings, contact_kernels(simd)) {
+        : activity(settings.body_capacity, settings.pair_capacity), frames(settings.body_capacity),
+          slots(settings.manifold_capacity), broad(settings), narrow(settings.body_capacity),
+          solver(settings, contact_kernels(simd)), sleep(settings) {
         // A pair that goes and one that comes both change in a tick.
         changes.reserve(2 * std::size_t{settings.pair_capacity});
     }
 
+    /// Who is awake, and what concerns them.
+    void look(const DynamicsTables& tables) {
+        activity.read_rows(tables.sleep);
+        activity.read_pairs(tables.pairs);
+    }
+    void refresh_frames(const DynamicsTables& tables) {
+        frames.refresh(tables, activity.rows());
+        frames.refresh(tables, activity.partners());
+    }
+
+    Activity activity;
     BodyFrames frames;
     ManifoldSlots slots;
     BroadPhase broad;
     NarrowPhase narrow;
     Solver solver;
+    Sleep sleep;
     std::vector<ContactChange> changes;
 };
 
@@ -35,16 +52,26 @@ Dynamics::~Dynamics() = default;
 
 StepFault Dynamics::broad_phase(const DynamicsTables& tables) {
     impl_->changes.clear();
-    impl_->frames.refresh(tables);
+    impl_->sleep.clear_changes();
+    impl_->activity.read_rows(tables.sleep);
+    const std::span<const BodyRow> awake = impl_->activity.rows();
+    if (awake.empty()) {
+        return StepFault::none;
+    }
+    impl_->frames.refresh(tables, awake);
     impl_->slots.read(tables.manifolds);
-    return impl_->broad.run(tables, impl_->frames, impl_->slots, impl_->changes);
+    return impl_->broad.run(tables, impl_->frames, awake, impl_->slots, impl_->changes);
 }
 
 StepFault Dynamics::narrow_phase(const DynamicsTables& tables, std::uint32_t tick) {
-    impl_->frames.refresh(tables);
+    impl_->look(tables);
+    if (impl_->activity.rows().empty()) {
+        return StepFault::none;
+    }
+    impl_->refresh_frames(tables);
     impl_->slots.read(tables.manifolds);
-    const StepFault fault =
-        impl_->narrow.run(tables, tick, impl_->frames, impl_->slots, impl_->changes);
+    const StepFault fault = impl_->narrow.run(
+        tables, tick, impl_->frames, impl_->activity, impl_->slots, impl_->changes);
     std::sort(impl_->changes.begin(),
               impl_->changes.end(),
               [](const ContactChange& x, const ContactChange& y) {
@@ -57,9 +84,16 @@ std::span<const ContactChange> Dynamics::contact_changes() const {
     return impl_->changes;
 }
 
+void Dynamics::wake(const DynamicsTables& tables) {
+    if (impl_->sleep.wake(tables, impl_->activity)) {
+        impl_->look(tables);
+    }
+}
+
 void Dynamics::solve(const DynamicsTables& tables, std::uint32_t tick) {
-    impl_->frames.refresh(tables);
-    impl_->solver.solve(tables, tick, impl_->frames);
+    impl_->look(tables);
+    impl_->refresh_frames(tables);
+    impl_->solver.solve(tables, tick, impl_->frames, impl_->activity);
 }
 
 void Dynamics::restitution(const DynamicsTables& tables) {
@@ -70,9 +104,27 @@ std::span<const ContactHit> Dynamics::contact_hits() const {
     return impl_->solver.hits();
 }
 
+void Dynamics::sleep(const DynamicsTables& tables) {
+    impl_->sleep.fall_asleep(tables, impl_->activity);
+}
+
+std::span<const SleepChange> Dynamics::sleep_changes() const {
+    return impl_->sleep.changes();
+}
+
 void Dynamics::drop_derived() {
     impl_->frames.drop();
 }
+
+namespace {
+
+void wake_dynamic(const DynamicsTables& tables, BodyRow row) {
+    if (tables.properties[row].mode == static_cast<std::uint8_t>(BodyMode::dynamic)) {
+        wake_body(tables, row);
+    }
+}
+
+} // namespace
 
 void remap_rows(const DynamicsTables& tables, std::span<const BodyRow> new_row_of) {
     const auto moved_to = [&](BodyRow row) {
@@ -82,19 +134,23 @@ void remap_rows(const DynamicsTables& tables, std::span<const BodyRow> new_row_o
     const std::uint32_t count = tables.pairs.count();
     for (std::uint32_t index = 0; index < count; ++index) {
         Pair pair = tables.pairs[index];
-        pair.row_a = moved_to(pair.row_a);
-        pair.row_b = moved_to(pair.row_b);
-        const bool stays = pair.row_a != kNoIndex && pair.row_b != kNoIndex;
+        const BodyRow row_a = moved_to(pair.row_a);
+        const BodyRow row_b = moved_to(pair.row_b);
+        const bool stays = row_a != kNoIndex && row_b != kNoIndex;
         if (pair.point_count != 0 && pair.manifold < tables.manifolds.count()) {
             Manifold& manifold = tables.manifolds[pair.manifold];
             if (stays) {
-                manifold.row_a = pair.row_a;
-                manifold.row_b = pair.row_b;
+                manifold.row_a = row_a;
+                manifold.row_b = row_b;
             } else {
                 manifold = Manifold{};
+                wake_dynamic(tables, pair.row_a);
+                wake_dynamic(tables, pair.row_b);
             }
         }
         if (stays) {
+            pair.row_a = row_a;
+            pair.row_b = row_b;
             tables.pairs[kept++] = pair;
         }
     }

@@ -19,15 +19,18 @@ struct DynamicsSettings {
     Vec3 gravity;                   // m/s^2
     Real linear_speed_max = 400.0;  // m/s
     Real angular_speed_max = 100.0; // rad/s
+    Real sleep_speed = 0.05;        // m/s
+    std::uint32_t sleep_ticks = 0;  // slow for so long, an island sleeps; 0: never
     std::uint32_t body_capacity = 0;
     std::uint32_t pair_capacity = 0;
     std::uint32_t manifold_capacity = 0;
 };
 
-/// Views of the arena's sections; motion and properties have the same rows.
+/// Views of the arena's sections; motion, properties and sleep have the same rows.
 struct DynamicsTables {
     Table<BodyMotion> motion;
     Table<BodyProperties> properties;
+    Table<BodySleep> sleep;
     Table<Pair> pairs;
     Table<Manifold> manifolds;
 };
@@ -55,6 +58,12 @@ struct ContactHit {
     std::int32_t impulse; // Q11.20 m/s: largest normal impulse of a substep / reduced mass
 };
 
+/// A dynamic body that fell asleep or woke in this tick.
+struct SleepChange {
+    BodyRow row;
+    bool asleep;
+};
+
 /// The rigid-body step over the arena's tables. Holds settings and scratch only: nothing that a
 /// later tick reads, nothing allocated after construction.
 class Dynamics {
@@ -70,12 +79,19 @@ public:
     /// Makes, recycles and frees manifolds of the pairs. `tick` is the tick being stepped (>= 1).
     StepFault narrow_phase(const DynamicsTables& tables, std::uint32_t tick);
     std::span<const ContactChange> contact_changes() const;
+    /// Wakes the islands that a body which is awake touches.
+    void wake(const DynamicsTables& tables);
     /// Substeps: integrates velocities and positions, solves contacts with friction.
     void solve(const DynamicsTables& tables, std::uint32_t tick);
     /// Newton's restitution for contacts that approached faster than 1 m/s.
     void restitution(const DynamicsTables& tables);
     /// Of the last solve and restitution.
     std::span<const ContactHit> contact_hits() const;
+
+    /// Puts islands to sleep that were slow for long enough.
+    void sleep(const DynamicsTables& tables);
+    /// Of wake and sleep, in this order, each in row order.
+    std::span<const SleepChange> sleep_changes() const;
 
     /// Drops what is only a cache; the results of later phases do not change by a bit.
     void drop_derived();
@@ -85,8 +101,12 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
+/// Wakes one body; the next tick's wake() wakes what it touches.
+void wake_body(const DynamicsTables& tables, BodyRow row);
+
 /// Removes pairs (and frees manifolds) of rows that map to kNoIndex and renumbers the others.
 /// `new_row_of[old_row]`, monotone over the rows that stay. Appends contact-end changes to none.
+/// What touched a row that goes wakes.
 void remap_rows(const DynamicsTables& tables, std::span<const BodyRow> new_row_of);
 
 } // namespace lockwind

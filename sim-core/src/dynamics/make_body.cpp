@@ -340,6 +340,7 @@ Status make_body(const BodyDefinition& definition,
     BodyProperties new_properties{};
     new_properties.mode = static_cast<std::uint8_t>(definition.mode);
     new_properties.shape = static_cast<std::uint8_t>(definition.shape.type);
+    new_properties.can_sleep = definition.can_sleep ? 1 : 0;
     new_properties.friction = convert<Coefficient>(definition.friction).raw();
     new_properties.restitution = convert<Coefficient>(definition.restitution).raw();
     fill_size(definition.shape, new_properties);

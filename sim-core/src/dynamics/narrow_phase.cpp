@@ -272,9 +272,10 @@ void tangent_of(const std::int32_t normal[3], std::int32_t tangent[3]) {
 
 NarrowPhase::NarrowPhase(std::uint32_t body_capacity) : gates_(body_capacity) {}
 
-void NarrowPhase::read_gates(const DynamicsTables& tables, const BodyFrames& frames) {
-    const std::uint32_t count = tables.motion.count();
-    for (BodyRow row = 0; row < count; ++row) {
+void NarrowPhase::read_gates(const DynamicsTables& tables,
+                             const BodyFrames& frames,
+                             std::span<const BodyRow> rows) {
+    for (const BodyRow row : rows) {
         const BodyMotion& motion = tables.motion[row];
         gates_[row] = {{motion.motion_stamp[kMotionTouching], motion.motion_stamp[kMotionOther]},
                        is_flat(frames[row].shape.type)};
@@ -291,13 +292,14 @@ bool NarrowPhase::needs_look(const Pair& pair) const {
 StepFault NarrowPhase::run(const DynamicsTables& tables,
                            std::uint32_t tick,
                            const BodyFrames& frames,
+                           const Activity& activity,
                            ManifoldSlots& slots,
                            std::vector<ContactChange>& changes) {
-    read_gates(tables, frames);
+    read_gates(tables, frames, activity.rows());
+    read_gates(tables, frames, activity.partners());
     PairLook look(tables, tick, frames, slots);
     StepFault fault = StepFault::none;
-    const std::uint32_t count = tables.pairs.count();
-    for (std::uint32_t index = 0; index < count; ++index) {
+    for (const std::uint32_t index : activity.pairs()) {
         Pair& pair = tables.pairs[index];
         if (!is_sound(pair, tables) || !needs_look(pair) || has_plane_only(pair, frames)) {
             continue;

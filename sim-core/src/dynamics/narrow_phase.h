@@ -1,10 +1,12 @@
 #pragma once
 
+#include "dynamics/activity.h"
 #include "dynamics/body_frame.h"
 #include "dynamics/dynamics.h"
 #include "dynamics/manifold_slots.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace lockwind {
@@ -26,6 +28,7 @@ public:
     StepFault run(const DynamicsTables& tables,
                   std::uint32_t tick,
                   const BodyFrames& frames,
+                  const Activity& activity,
                   ManifoldSlots& slots,
                   std::vector<ContactChange>& changes);
 
@@ -35,7 +38,9 @@ private:
         std::uint32_t stamp[2];
         bool flat;
     };
-    void read_gates(const DynamicsTables& tables, const BodyFrames& frames);
+    void read_gates(const DynamicsTables& tables,
+                    const BodyFrames& frames,
+                    std::span<const BodyRow> rows);
     bool needs_look(const Pair& pair) const;
 
     std::vector<Gate> gates_;

@@ -6,9 +6,12 @@ Solver::Solver(const DynamicsSettings& settings, const ContactKernels& kernels)
     : constants_(make_step_constants(settings)), bodies_(settings.body_capacity),
       contacts_(settings, kernels) {}
 
-void Solver::solve(const DynamicsTables& tables, std::uint32_t tick, const BodyFrames& frames) {
-    bodies_.read(constants_, tables, frames);
-    contacts_.prepare(constants_, tables, frames, bodies_);
+void Solver::solve(const DynamicsTables& tables,
+                   std::uint32_t tick,
+                   const BodyFrames& frames,
+                   const Activity& activity) {
+    bodies_.read(constants_, tables, frames, activity);
+    contacts_.prepare(constants_, tables, frames, activity, bodies_);
     for (std::uint32_t substep = 0; substep < constants_.substeps; ++substep) {
         bodies_.integrate_velocities(constants_, substep);
         if (substep == 0) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "dynamics/activity.h"
 #include "dynamics/contact_kernels.h"
 #include "dynamics/contact_solver.h"
 #include "dynamics/dynamics.h"
@@ -16,7 +17,10 @@ class Solver {
 public:
     explicit Solver(const DynamicsSettings& settings,
                     const ContactKernels& kernels = kernels_of<ScalarLanes>());
-    void solve(const DynamicsTables& tables, std::uint32_t tick, const BodyFrames& frames);
+    void solve(const DynamicsTables& tables,
+               std::uint32_t tick,
+               const BodyFrames& frames,
+               const Activity& activity);
     void restitution(const DynamicsTables& tables);
     std::span<const ContactHit> hits() const { return contacts_.hits(); }
 

@@ -59,14 +59,19 @@ SolverBodies::SolverBodies(std::uint32_t capacity)
 
 void SolverBodies::read(const StepConstants& constants,
                         const DynamicsTables& tables,
-                        const BodyFrames& frames) {
+                        const BodyFrames& frames,
+                        const Activity& activity) {
     dynamic_rows_.clear();
     kinematic_rows_.clear();
-    const std::uint32_t count = tables.motion.count();
-    for (BodyRow row = 0; row < count; ++row) {
+    for (const BodyRow row : activity.rows()) {
         const BodyProperties& body = tables.properties[row];
         read_terms(frames[row], body, terms_[row]);
         read_body(constants, tables.motion[row], body, row);
+    }
+    for (const BodyRow row : activity.partners()) {
+        read_terms(frames[row], tables.properties[row], terms_[row]);
+        bodies_[row] = SolverBody{}; // at rest, and not to be moved
+        speed_bound_[row] = 0;
     }
 }
 

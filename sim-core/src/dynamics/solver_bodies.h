@@ -1,5 +1,6 @@
 #pragma once
 
+#include "dynamics/activity.h"
 #include "dynamics/body_frame.h"
 #include "dynamics/body_integration.h"
 #include "dynamics/contact_block.h"
@@ -18,8 +19,10 @@ class SolverBodies {
 public:
     explicit SolverBodies(std::uint32_t capacity);
 
-    void
-    read(const StepConstants& constants, const DynamicsTables& tables, const BodyFrames& frames);
+    void read(const StepConstants& constants,
+              const DynamicsTables& tables,
+              const BodyFrames& frames,
+              const Activity& activity);
     /// Gravity, and what the constraints did in the substep before: that is a later substep's warm
     /// start.
     void integrate_velocities(const StepConstants& constants, std::uint32_t substep);
@@ -31,7 +34,8 @@ public:
     void read_velocities(const DynamicsTables& tables);
     void write_velocities(const StepConstants& constants, const DynamicsTables& tables);
 
-    /// By row; one more at rest, of the lanes without a contact.
+    /// By row, of those that are awake and their partners; one more at rest, of the lanes without
+    /// a contact.
     SolverBody* bodies() { return bodies_.data(); }
     BodyRow padding_row() const { return padding_row_; }
     const BodyTerms& terms(BodyRow row) const { return terms_[row]; }

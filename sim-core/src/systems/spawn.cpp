@@ -4,6 +4,22 @@
 
 namespace lockwind {
 
+namespace {
+
+void move_body(const DynamicsTables& tables, BodyRow from, BodyRow to) {
+    tables.motion[to] = tables.motion[from];
+    tables.properties[to] = tables.properties[from];
+    tables.sleep[to] = tables.sleep[from];
+}
+
+void set_body_count(const DynamicsTables& tables, std::uint32_t count) {
+    tables.motion.set_count(count);
+    tables.properties.set_count(count);
+    tables.sleep.set_count(count);
+}
+
+} // namespace
+
 BodyRow row_of(const Table<BodyMotion>& motion, BodyId id) {
     const std::span<BodyMotion> rows = motion.rows();
     const auto found =
@@ -73,15 +89,12 @@ StepFault Spawner::apply(const DynamicsTables& tables) {
         BodyRow packed = 0;
         for (BodyRow row = 0; row < old_count; ++row) {
             if (destroyed_[row] == 0) {
-                tables.motion[packed] = tables.motion[row];
-                tables.properties[packed] = tables.properties[row];
+                move_body(tables, row, packed);
                 ++packed;
             }
         }
-        tables.motion.set_count(kept);
-        tables.properties.set_count(kept);
-        tables.motion.set_count(count);
-        tables.properties.set_count(count);
+        set_body_count(tables, kept); // zeroes what is left behind
+        set_body_count(tables, count);
         // From the back, so that a row moves up before its place is taken.
         BodyRow target = count;
         BodyRow old = kept;
@@ -90,12 +103,12 @@ StepFault Spawner::apply(const DynamicsTables& tables) {
             while (old > 0 && tables.motion[old - 1].id > body.motion.id) {
                 --target;
                 --old;
-                tables.motion[target] = tables.motion[old];
-                tables.properties[target] = tables.properties[old];
+                move_body(tables, old, target);
             }
             --target;
             tables.motion[target] = body.motion;
             tables.properties[target] = body.properties;
+            tables.sleep[target] = BodySleep{};
         }
     }
     created_.clear();

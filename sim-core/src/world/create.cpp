@@ -16,10 +16,10 @@ std::uint32_t creations_max(std::size_t pods) {
     return static_cast<std::uint32_t>(std::max<std::size_t>(1, 2 * pods));
 }
 
-/// A pair changes once and hits once a tick; a body is created or destroyed once, and a ball
-/// scores once.
+/// A pair changes once and hits once a tick; a body is created or destroyed once, wakes once and
+/// falls asleep once, and a ball scores once.
 std::size_t events_max(const DynamicsSettings& capacities) {
-    return std::size_t{3} * capacities.pair_capacity + std::size_t{3} * capacities.body_capacity;
+    return std::size_t{3} * capacities.pair_capacity + std::size_t{5} * capacities.body_capacity;
 }
 
 std::array<std::uint32_t, section::kCount> capacities_of(const DynamicsSettings& capacities,
@@ -29,6 +29,7 @@ std::array<std::uint32_t, section::kCount> capacities_of(const DynamicsSettings&
     rows[section::kGlobals] = 1;
     rows[section::kBody] = capacities.body_capacity;
     rows[section::kBodyProperties] = capacities.body_capacity;
+    rows[section::kBodySleep] = capacities.body_capacity;
     rows[section::kPair] = capacities.pair_capacity;
     rows[section::kManifold] = capacities.manifold_capacity;
     rows[section::kPlayer] = static_cast<std::uint32_t>(pods);
@@ -45,6 +46,7 @@ Status make_bodies(const WorldDefinition& definition, const DynamicsTables& tabl
     });
     tables.motion.set_count(static_cast<std::uint32_t>(sorted.size()));
     tables.properties.set_count(static_cast<std::uint32_t>(sorted.size()));
+    tables.sleep.set_count(static_cast<std::uint32_t>(sorted.size()));
     for (BodyRow row = 0; row < sorted.size(); ++row) {
         if (Status made = make_body(
                 *sorted[row], definition.settings, tables.motion[row], tables.properties[row]);
@@ -71,6 +73,7 @@ World::Impl::Impl(const WorldDefinition& definition,
 DynamicsTables World::Impl::tables_of(StateArena& arena) {
     return {arena.table<BodyMotion>(section::kBody),
             arena.table<BodyProperties>(section::kBodyProperties),
+            arena.table<BodySleep>(section::kBodySleep),
             arena.table<Pair>(section::kPair),
             arena.table<Manifold>(section::kManifold)};
 }
@@ -100,6 +103,7 @@ Result<WorldPtr> World::create(const WorldDefinition& definition, Simd simd) {
     for (Slot slot = 0; slot < players.size(); ++slot) {
         impl->players()[slot] = players[slot];
         const BodyRow row = row_of(tables.motion, players[slot].body);
+        tables.properties[row].can_sleep = 0; // its player may move at any tick
         BodyRecord start{tables.motion[row], tables.properties[row]};
         write_velocity({}, start.motion.linear_velocity);
         write_velocity({}, start.motion.angular_velocity);

@@ -14,6 +14,8 @@ constexpr Real kGravityMax = 1000.0;
 constexpr Real kLinearSpeedLimit = 1000.0;
 constexpr Real kAngularSpeedLimit = 1000.0;
 constexpr Real kBoundsMax = 16000.0;
+constexpr Real kSleepSpeedMax = 10.0;
+constexpr Real kSleepSecondsMax = 60.0;
 
 struct Range {
     const char* name;
@@ -40,6 +42,8 @@ Status check_settings(const WorldSettings& settings) {
         {"gravity.z", settings.gravity.z, -kGravityMax, kGravityMax, "-1000 .. 1000 m/s^2"},
         {"linear_speed_max", settings.linear_speed_max, 1, kLinearSpeedLimit, "1 .. 1000 m/s"},
         {"angular_speed_max", settings.angular_speed_max, 1, kAngularSpeedLimit, "1 .. 1000 rad/s"},
+        {"sleep_speed", settings.sleep_speed, 0, kSleepSpeedMax, "0 .. 10 m/s"},
+        {"sleep_seconds", settings.sleep_seconds, 0, kSleepSecondsMax, "0 .. 60 s"},
         {"bounds", settings.bounds, 1, kBoundsMax, "1 .. 16000 m"},
     };
     for (const Range& range : ranges) {
@@ -62,6 +66,12 @@ std::uint32_t plane_count(const WorldDefinition& definition) {
     };
     return static_cast<std::uint32_t>(
         std::count_if(definition.bodies.begin(), definition.bodies.end(), is_plane));
+}
+
+/// Rounded up: of a time above 0 at least one tick.
+std::uint32_t sleep_ticks(const WorldSettings& settings) {
+    const Real ticks = settings.sleep_seconds * Real(settings.tick_rate_hz);
+    return static_cast<std::uint32_t>((ticks.raw() + Real(1).raw() - 1) >> Real::kFraction);
 }
 
 /// Balls alive at once: one a cooldown during a lifetime, the first and the one being made.
@@ -110,6 +120,8 @@ DynamicsSettings dynamics_settings(const WorldDefinition& definition) {
     dynamics.gravity = settings.gravity;
     dynamics.linear_speed_max = settings.linear_speed_max;
     dynamics.angular_speed_max = settings.angular_speed_max;
+    dynamics.sleep_speed = settings.sleep_speed;
+    dynamics.sleep_ticks = sleep_ticks(settings);
     std::uint64_t bodies = definition.bodies.size() + 8;
     for (const PodDefinition& pod : definition.pods) {
         bodies += balls_max(pod);

@@ -11,7 +11,8 @@ namespace lockwind {
 
 namespace {
 
-BodyView view_of(const BodyMotion& motion, const BodyProperties& properties) {
+BodyView
+view_of(const BodyMotion& motion, const BodyProperties& properties, const BodySleep& sleep) {
     const BodyReading body = read_body(motion, properties);
     return {motion.id,
             body.mode,
@@ -20,7 +21,8 @@ BodyView view_of(const BodyMotion& motion, const BodyProperties& properties) {
             body.orientation,
             body.linear_velocity,
             body.angular_velocity,
-            body.mass};
+            body.mass,
+            sleep.asleep != 0};
 }
 
 Vec3 clamped(const Vec3& value, Real limit) {
@@ -76,6 +78,9 @@ WorldCounts World::counts() const {
     const DynamicsTables tables = impl_->tables();
     WorldCounts counts{};
     counts.bodies = tables.motion.count();
+    for (BodyRow row = 0; row < counts.bodies; ++row) {
+        counts.awake += tables.sleep[row].asleep == 0 && is_dynamic(tables.properties[row]) ? 1 : 0;
+    }
     counts.pairs = tables.pairs.count();
     for (const Pair& pair : tables.pairs.rows()) {
         counts.contacts += pair.point_count;
@@ -99,7 +104,7 @@ std::uint32_t World::body_count() const {
 BodyView World::body_at(BodyRow row) const {
     const DynamicsTables tables = impl_->tables();
     LOCKWIND_ASSERT(row < tables.motion.count());
-    return view_of(tables.motion[row], tables.properties[row]);
+    return view_of(tables.motion[row], tables.properties[row], tables.sleep[row]);
 }
 
 std::optional<BodyView> World::body(BodyId id) const {
@@ -132,6 +137,7 @@ bool World::apply_impulse(BodyId id, const Vec3& impulse, const Vec3& point) {
     write_velocity(read_velocity(motion.angular_velocity) +
                        spin_change(cross(arm, change), motion, properties),
                    motion.angular_velocity);
+    wake_body(tables, row);
     return true;
 }
 
@@ -155,6 +161,7 @@ bool World::apply_torque(BodyId id, const Vec3& torque) {
     write_velocity(read_velocity(motion.angular_velocity) +
                        spin_change(by_mass, motion, properties),
                    motion.angular_velocity);
+    wake_body(tables, row);
     return true;
 }
 

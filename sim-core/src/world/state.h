@@ -29,11 +29,12 @@ struct RowCounts {
     std::uint32_t globals;
     std::uint32_t body;
     std::uint32_t body_properties;
+    std::uint32_t body_sleep;
     std::uint32_t pair;
     std::uint32_t manifold;
     std::uint32_t player;
 };
-static_assert(sizeof(RowCounts) == 28);
+static_assert(sizeof(RowCounts) == 32);
 
 /// Sections by number, in the order of kWorldSections.
 namespace section {
@@ -41,10 +42,11 @@ inline constexpr std::uint32_t kArena = 0;
 inline constexpr std::uint32_t kGlobals = 1;
 inline constexpr std::uint32_t kBody = 2;
 inline constexpr std::uint32_t kBodyProperties = 3;
-inline constexpr std::uint32_t kPair = 4;
-inline constexpr std::uint32_t kManifold = 5;
-inline constexpr std::uint32_t kPlayer = 6;
-inline constexpr std::uint32_t kCount = 7;
+inline constexpr std::uint32_t kBodySleep = 4;
+inline constexpr std::uint32_t kPair = 5;
+inline constexpr std::uint32_t kManifold = 6;
+inline constexpr std::uint32_t kPlayer = 7;
+inline constexpr std::uint32_t kCount = 8;
 } // namespace section
 
 inline constexpr std::array kRowCountsFields{
@@ -52,6 +54,7 @@ inline constexpr std::array kRowCountsFields{
     LOCKWIND_FIELD(RowCounts, globals, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, body, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, body_properties, 0, "", ""),
+    LOCKWIND_FIELD(RowCounts, body_sleep, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, pair, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, manifold, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, player, 0, "", ""),
@@ -71,6 +74,7 @@ inline constexpr std::array<SectionDescriptor, section::kCount> kWorldSections{{
     {"globals", "world", sizeof(Globals), false, "", kGlobalsFields},
     {"body", "dynamics", sizeof(BodyMotion), false, "id", kBodyMotionFields},
     {"body_properties", "dynamics", sizeof(BodyProperties), false, "", kBodyPropertiesFields},
+    {"body_sleep", "dynamics", sizeof(BodySleep), false, "", kBodySleepFields},
     {"pair", "dynamics", sizeof(Pair), false, "", kPairFields},
     {"manifold", "dynamics", sizeof(Manifold), false, "", kManifoldFields},
     {"player", "systems", sizeof(Player), false, "", kPlayerFields},

@@ -22,8 +22,10 @@ public:
     StepFault apply_inputs();
     StepFault broad_phase();
     StepFault narrow_phase();
+    StepFault wake();
     StepFault solve();
     StepFault restitution();
+    StepFault sleep();
     StepFault spawns_despawns();
     StepFault events();
     StepFault next_tick();
@@ -52,8 +54,10 @@ constexpr std::array kPhases{
     Phase{"apply_inputs", &Step::apply_inputs},
     Phase{"broad_phase", &Step::broad_phase},
     Phase{"narrow_phase", &Step::narrow_phase},
+    Phase{"wake", &Step::wake},
     Phase{"solve", &Step::solve},
     Phase{"restitution", &Step::restitution},
+    Phase{"sleep", &Step::sleep},
     Phase{"spawns_despawns", &Step::spawns_despawns},
     Phase{"events", &Step::events},
     Phase{"next_tick", &Step::next_tick},
@@ -107,6 +111,11 @@ StepFault Step::narrow_phase() {
     return world_.dynamics.narrow_phase(tables_, tick_low());
 }
 
+StepFault Step::wake() {
+    world_.dynamics.wake(tables_);
+    return StepFault::none;
+}
+
 StepFault Step::solve() {
     world_.dynamics.solve(tables_, tick_low());
     return StepFault::none;
@@ -114,6 +123,11 @@ StepFault Step::solve() {
 
 StepFault Step::restitution() {
     world_.dynamics.restitution(tables_);
+    return StepFault::none;
+}
+
+StepFault Step::sleep() {
+    world_.dynamics.sleep(tables_);
     return StepFault::none;
 }
 
@@ -139,6 +153,10 @@ void Step::report_contacts() {
     }
     for (const ContactHit& hit : world_.dynamics.contact_hits()) {
         world_.events.add(EventType::hit, id(hit.row_a), id(hit.row_b), hit.impulse);
+    }
+    for (const SleepChange& change : world_.dynamics.sleep_changes()) {
+        const EventType type = change.asleep ? EventType::fell_asleep : EventType::woke;
+        world_.events.add(type, id(change.row), 0, 0);
     }
 }
 

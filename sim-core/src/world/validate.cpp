@@ -152,10 +152,26 @@ const char* bad_properties_field(const BodyProperties& properties) {
         properties.restitution > convert<Coefficient>(kRestitutionMax).raw()) {
         return "restitution";
     }
-    if (!all_zero(properties.zero)) {
+    if (properties.can_sleep > 1) {
+        return "can_sleep";
+    }
+    if (properties.zero != 0) {
         return "zero";
     }
     return properties.spawn_count > kSpawnCountMax ? "spawn_count" : nullptr;
+}
+
+/// A body that sleeps does not move.
+const char* bad_sleep_field(const BodySleep& sleep,
+                            const BodyMotion& motion,
+                            const BodyProperties& properties) {
+    const bool moves =
+        properties.mode != static_cast<std::uint8_t>(BodyMode::fixed) &&
+        (!all_within(motion.linear_velocity, 0) || !all_within(motion.angular_velocity, 0));
+    if (sleep.asleep > 1 || (sleep.asleep == 1 && moves)) {
+        return "asleep";
+    }
+    return sleep.zero != 0 ? "zero" : nullptr;
 }
 
 bool is_dynamic(const DynamicsTables& tables, BodyRow row) {
@@ -326,8 +342,9 @@ Status check_bodies(const DynamicsTables& tables,
                     const DynamicsTables* known,
                     const WorldSettings& settings) {
     const std::uint32_t count = tables.motion.count();
-    if (tables.properties.count() != count) {
-        return Error{"snapshot: sections \"body\" and \"body_properties\" differ in rows"};
+    if (tables.properties.count() != count || tables.sleep.count() != count) {
+        return Error{
+            "snapshot: sections \"body\", \"body_properties\" and \"body_sleep\" differ in rows"};
     }
     for (BodyRow row = 0; row < count; ++row) {
         const BodyMotion& motion = tables.motion[row];
@@ -345,6 +362,10 @@ Status check_bodies(const DynamicsTables& tables,
         }
         if (const char* field = bad_motion_field(motion, properties); field != nullptr) {
             return bad("body", row, field);
+        }
+        if (const char* field = bad_sleep_field(tables.sleep[row], motion, properties);
+            field != nullptr) {
+            return bad("body_sleep", row, field);
         }
         const BodyRow spawner =
             spawner_of(motion.id) != 0 ? row_of(tables.motion, spawner_of(motion.id)) : kNoIndex;

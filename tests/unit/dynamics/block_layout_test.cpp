@@ -19,6 +19,7 @@ public:
         DynamicsState& state = bench_.state();
         state.motion_count = bodies;
         state.properties_count = bodies;
+        state.sleep_count = bodies;
         for (BodyProperties& body : state.properties) {
             body.mode = random() % 6 == 0 ? static_cast<std::uint8_t>(random() % 2) : kDynamicMode;
         }
@@ -42,6 +43,7 @@ public:
         state.manifold_count = index;
     }
     DynamicsTables tables() { return bench_.tables(); }
+    Activity activity() { return bench_.activity(); }
     bool is_dynamic(BodyRow row) { return bench_.properties(row).mode == kDynamicMode; }
     std::uint32_t pair_capacity() const { return bench_.pair_capacity(); }
     std::uint32_t manifold_capacity() const { return bench_.manifold_capacity(); }
@@ -55,7 +57,7 @@ TEST(Colouring, NoDynamicBodyMeetsTwiceInAColour) {
         PairTables made(120, 700, seed);
         const DynamicsTables tables = made.tables();
         Colouring colouring(120, made.pair_capacity());
-        colouring.run(tables);
+        colouring.run(tables, made.activity());
         std::set<std::pair<int, BodyRow>> seen;
         std::size_t overflow = 0;
         for (const ColouredContact& contact : colouring.contacts()) {
@@ -80,7 +82,7 @@ TEST(Colouring, TakesEveryTouchingPairThatMovesOnceInOrder) {
     PairTables made(100, 500, 42);
     const DynamicsTables tables = made.tables();
     Colouring colouring(100, made.pair_capacity());
-    colouring.run(tables);
+    colouring.run(tables, made.activity());
     std::vector<std::uint32_t> expected;
     for (std::uint32_t index = 0; index < tables.pairs.count(); ++index) {
         const Pair& pair = tables.pairs[index];
@@ -101,8 +103,8 @@ TEST(Colouring, IsTheGreedyOneOfPairOrder) {
     const DynamicsTables tables = made.tables();
     Colouring colouring(60, made.pair_capacity());
     PairTables other(60, 300, 99);
-    colouring.run(other.tables());
-    colouring.run(tables);
+    colouring.run(other.tables(), other.activity());
+    colouring.run(tables, made.activity());
     std::map<BodyRow, std::set<std::uint32_t>> used;
     for (const ColouredContact& contact : colouring.contacts()) {
         const Pair& pair = tables.pairs[contact.pair];
@@ -127,7 +129,7 @@ TEST(BlockLayout, HoldsEveryContactOnceByColourPointsAndPair) {
     PairTables made(120, 700, 5);
     const DynamicsTables tables = made.tables();
     Colouring colouring(120, made.pair_capacity());
-    colouring.run(tables);
+    colouring.run(tables, made.activity());
     BlockLayout layout(made.manifold_capacity());
     layout.run(tables, colouring.contacts());
     std::map<std::uint32_t, std::uint8_t> colour_of;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/table.h"
+#include "dynamics/activity.h"
 #include "dynamics/dynamics.h"
 #include "dynamics/make_body.h"
 
@@ -20,10 +21,12 @@ namespace lockwind {
 struct DynamicsState {
     std::vector<BodyMotion> motion;
     std::vector<BodyProperties> properties;
+    std::vector<BodySleep> sleep;
     std::vector<Pair> pairs;
     std::vector<Manifold> manifolds;
     std::uint32_t motion_count = 0;
     std::uint32_t properties_count = 0;
+    std::uint32_t sleep_count = 0;
     std::uint32_t pair_count = 0;
     std::uint32_t manifold_count = 0;
     std::uint32_t tick = 0;
@@ -36,7 +39,7 @@ inline bool same_bits(const DynamicsState& a, const DynamicsState& b) {
     };
     return a.tick == b.tick && a.motion_count == b.motion_count && a.pair_count == b.pair_count &&
            a.manifold_count == b.manifold_count && same(a.motion, b.motion) &&
-           same(a.properties, b.properties) && same(a.pairs, b.pairs) &&
+           same(a.properties, b.properties) && same(a.sleep, b.sleep) && same(a.pairs, b.pairs) &&
            same(a.manifolds, b.manifolds);
 }
 
@@ -50,6 +53,7 @@ public:
                                                              : 8 * capacity) {
         state_.motion.resize(capacity);
         state_.properties.resize(capacity);
+        state_.sleep.resize(capacity);
         state_.pairs.resize(pair_capacity());
         state_.manifolds.resize(manifold_capacity());
         renew();
@@ -58,6 +62,11 @@ public:
     std::uint32_t pair_capacity() const { return pair_capacity_; }
     std::uint32_t manifold_capacity() const { return manifold_capacity_; }
 
+    /// Bodies sleep after so many ticks; without this never.
+    void let_sleep(std::uint32_t ticks) {
+        sleep_ticks_ = ticks;
+        renew();
+    }
     /// A Dynamics that remembers nothing.
     void renew() {
         DynamicsSettings settings;
@@ -66,6 +75,8 @@ public:
         settings.gravity = settings_.gravity;
         settings.linear_speed_max = settings_.linear_speed_max;
         settings.angular_speed_max = settings_.angular_speed_max;
+        settings.sleep_speed = settings_.sleep_speed;
+        settings.sleep_ticks = sleep_ticks_;
         settings.body_capacity = capacity_;
         settings.pair_capacity = pair_capacity();
         settings.manifold_capacity = manifold_capacity();
@@ -75,6 +86,7 @@ public:
     BodyRow add(BodyDefinition definition) {
         const BodyRow row = state_.motion_count++;
         ++state_.properties_count;
+        ++state_.sleep_count;
         definition.id = row + 1;
         const Status made =
             make_body(definition, settings_, state_.motion[row], state_.properties[row]);
@@ -85,6 +97,7 @@ public:
     DynamicsTables tables() {
         return {{state_.motion.data(), &state_.motion_count, capacity_},
                 {state_.properties.data(), &state_.properties_count, capacity_},
+                {state_.sleep.data(), &state_.sleep_count, capacity_},
                 {state_.pairs.data(), &state_.pair_count, pair_capacity()},
                 {state_.manifolds.data(), &state_.manifold_count, manifold_capacity()}};
     }
@@ -93,13 +106,23 @@ public:
         ++state_.tick;
         ASSERT_EQ(dynamics_->broad_phase(tables()), StepFault::none);
         ASSERT_EQ(dynamics_->narrow_phase(tables(), state_.tick), StepFault::none);
+        dynamics_->wake(tables());
         dynamics_->solve(tables(), state_.tick);
         dynamics_->restitution(tables());
+        dynamics_->sleep(tables());
     }
     void run(int ticks) {
         for (int tick = 0; tick < ticks; ++tick) {
             step();
         }
+    }
+
+    /// Who is awake now.
+    Activity activity() {
+        Activity activity(capacity_, pair_capacity());
+        activity.read_rows(tables().sleep);
+        activity.read_pairs(tables().pairs);
+        return activity;
     }
 
     Dynamics& dynamics() { return *dynamics_; }
@@ -124,6 +147,7 @@ public:
 
 private:
     WorldSettings settings_;
+    std::uint32_t sleep_ticks_ = 0;
     std::uint32_t capacity_;
     std::uint32_t pair_capacity_;
     std::uint32_t manifold_capacity_;

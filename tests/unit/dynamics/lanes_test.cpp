@@ -157,8 +157,10 @@ public:
         const std::uint32_t tick = ++bench_.state().tick;
         ASSERT_EQ(bench_.dynamics().broad_phase(tables), StepFault::none);
         ASSERT_EQ(bench_.dynamics().narrow_phase(tables, tick), StepFault::none);
-        frames_->refresh(tables);
-        solver_->solve(tables, tick, *frames_);
+        const Activity activity = bench_.activity();
+        frames_->refresh(tables, activity.rows());
+        frames_->refresh(tables, activity.partners());
+        solver_->solve(tables, tick, *frames_, activity);
         solver_->restitution(tables);
     }
     DynamicsBench& bench() { return bench_; }

@@ -178,7 +178,7 @@ TEST(Snapshot, RefusesDamagedBodies) {
         {"friction", [](World& w) { properties(w).friction = -1; }},
         {"friction", [](World& w) { properties(w).friction = 0x7fffffff; }},
         {"restitution", [](World& w) { properties(w).restitution = 0x7fffffff; }},
-        {"padding", [](World& w) { properties(w).zero[1] = 1; }},
+        {"padding", [](World& w) { properties(w).zero = 1; }},
         {"spawn count", [](World& w) { properties(w).spawn_count = 0x80000000U; }},
         {"spawn count below a living ball's",
          [](World& w) {

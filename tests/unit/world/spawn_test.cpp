@@ -12,12 +12,13 @@
 namespace lockwind::test {
 namespace {
 
-constexpr std::array<std::uint32_t, section::kCount> kCapacities{1, 1, 32, 32, 200, 200, 4};
+constexpr std::array<std::uint32_t, section::kCount> kCapacities{1, 1, 32, 32, 32, 200, 200, 4};
 
 struct Tables {
     StateArena arena{kWorldSections, kCapacities};
     DynamicsTables dynamics{arena.table<BodyMotion>(section::kBody),
                             arena.table<BodyProperties>(section::kBodyProperties),
+                            arena.table<BodySleep>(section::kBodySleep),
                             arena.table<Pair>(section::kPair),
                             arena.table<Manifold>(section::kManifold)};
 
@@ -25,6 +26,7 @@ struct Tables {
         const std::uint32_t row = dynamics.motion.count();
         dynamics.motion.set_count(row + 1);
         dynamics.properties.set_count(row + 1);
+        dynamics.sleep.set_count(row + 1);
         dynamics.motion[row].id = id;
         dynamics.properties[row].spawn_count = static_cast<std::uint32_t>(id);
     }

@@ -24,6 +24,7 @@ TEST(StateLayout, SectionsAreThoseThatTheirNumbersName) {
         {section::kGlobals, "globals"},
         {section::kBody, "body"},
         {section::kBodyProperties, "body_properties"},
+        {section::kBodySleep, "body_sleep"},
         {section::kPair, "pair"},
         {section::kManifold, "manifold"},
         {section::kPlayer, "player"},

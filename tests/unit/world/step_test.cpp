@@ -48,8 +48,10 @@ TEST(WorldStep, RunsItsPhasesInOrder) {
     const std::vector<std::string_view> expected{"apply_inputs",
                                                  "broad_phase",
                                                  "narrow_phase",
+                                                 "wake",
                                                  "solve",
                                                  "restitution",
+                                                 "sleep",
                                                  "spawns_despawns",
                                                  "events",
                                                  "next_tick"};
@@ -58,27 +60,39 @@ TEST(WorldStep, RunsItsPhasesInOrder) {
     const WorldPtr world = make_world(busy_scene(10, 2));
     PhaseList observer(*world);
     ASSERT_TRUE(world->step(busy_inputs(1, 2), &observer).ok());
-    EXPECT_EQ(observer.phases, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6, 7}));
-    EXPECT_EQ(observer.ticks, (std::vector<Tick>{0, 0, 0, 0, 0, 0, 0, 1}));
+    EXPECT_EQ(observer.phases, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
+    EXPECT_EQ(observer.ticks, (std::vector<Tick>{0, 0, 0, 0, 0, 0, 0, 0, 0, 1}));
     EXPECT_EQ(observer.hashes.back(), world->state_hash());
 }
 
-TEST(WorldStep, EveryPhaseLeavesItsResultsInTheState) {
-    const WorldPtr world = make_world(busy_scene(30, 2));
-    for (int tick = 0; tick < 90; ++tick) {
-        step_busy(*world);
-    }
-    // Over some ticks each phase changes the hash at least once.
-    std::vector<bool> changed(World::phases().size(), false);
-    for (int tick = 0; tick < 60; ++tick) {
-        std::uint64_t hash = world->state_hash();
-        PhaseList observer(*world);
-        ASSERT_TRUE(world->step(busy_inputs(world->tick() + 1, 2), &observer).ok());
+/// Notes the phases of some ticks that change the hash.
+void note_changes(World& world, int ticks, std::vector<bool>& changed) {
+    for (int tick = 0; tick < ticks; ++tick) {
+        std::uint64_t hash = world.state_hash();
+        PhaseList observer(world);
+        ASSERT_TRUE(world.step(busy_inputs(world.tick() + 1, world.slot_count()), &observer).ok());
         for (std::size_t phase = 0; phase < changed.size(); ++phase) {
             changed[phase] = changed[phase] || observer.hashes[phase] != hash;
             hash = observer.hashes[phase];
         }
     }
+}
+
+TEST(WorldStep, EveryPhaseLeavesItsResultsInTheState) {
+    std::vector<bool> changed(World::phases().size(), false);
+    const WorldPtr world = make_world(busy_scene(30, 2));
+    for (int tick = 0; tick < 90; ++tick) {
+        step_busy(*world);
+    }
+    note_changes(*world, 60, changed);
+    // A box that sleeps, and is woken.
+    WorldDefinition scene;
+    scene.bodies.push_back(ground(1));
+    scene.bodies.push_back(box(2, {0, 0.5, 0}, {0.5, 0.5, 0.5}));
+    const WorldPtr quiet = make_world(scene);
+    note_changes(*quiet, 60, changed);
+    ASSERT_TRUE(quiet->create_body(sphere(3, {0, 2, 0}, 0.5)).ok());
+    note_changes(*quiet, 60, changed);
     for (std::size_t phase = 0; phase < changed.size(); ++phase) {
         EXPECT_TRUE(changed[phase]) << World::phases()[phase];
     }
@@ -147,6 +161,7 @@ TEST(WorldStep, ABallThatLandsBeginsAContactAndHits) {
     WorldDefinition scene;
     scene.bodies.push_back(ground(1));
     scene.bodies.push_back(sphere(2, {0, 2, 0}, 0.5));
+    scene.settings.sleep_seconds = 0;
     const WorldPtr world = make_world(scene);
     std::vector<Event> events;
     for (int tick = 0; tick < 120; ++tick) {

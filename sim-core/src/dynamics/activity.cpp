@@ -1,0 +1,52 @@
+#include "dynamics/activity.h"
+
+#include <algorithm>
+
+namespace lockwind {
+
+Activity::Activity(std::uint32_t body_capacity, std::uint32_t pair_capacity)
+    : part_(body_capacity) {
+    rows_.reserve(body_capacity);
+    partners_.reserve(body_capacity);
+    pairs_.reserve(pair_capacity);
+}
+
+void Activity::read_rows(const Table<BodySleep>& sleep) {
+    rows_.clear();
+    partners_.clear();
+    pairs_.clear();
+    row_count_ = sleep.count();
+    for (BodyRow row = 0; row < row_count_; ++row) {
+        const bool awake = sleep[row].asleep == 0;
+        part_[row] = awake ? Part::awake : Part::none;
+        if (awake) {
+            rows_.push_back(row);
+        }
+    }
+}
+
+void Activity::add_partner(BodyRow row) {
+    if (part_[row] == Part::none) {
+        part_[row] = Part::partner;
+        partners_.push_back(row);
+    }
+}
+
+void Activity::read_pairs(const Table<Pair>& pairs) {
+    if (rows_.empty()) {
+        return;
+    }
+    const std::uint32_t count = pairs.count();
+    for (std::uint32_t index = 0; index < count; ++index) {
+        const Pair& pair = pairs[index];
+        // Damaged rows must not lead outside.
+        if (pair.row_a < pair.row_b && pair.row_b < row_count_ &&
+            (is_awake(pair.row_a) || is_awake(pair.row_b))) {
+            pairs_.push_back(index);
+            add_partner(pair.row_a);
+            add_partner(pair.row_b);
+        }
+    }
+}
+
+} // namespace lockwind
