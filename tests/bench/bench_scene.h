@@ -32,5 +32,6 @@ WorldDefinition load_bench_scene(const BenchScene& scene);
 
 void register_step_benchmarks();
 void register_state_benchmarks();
+void register_growth_benchmarks();
 
 } // namespace lockwind::bench

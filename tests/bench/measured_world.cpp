@@ -87,12 +87,7 @@ std::uint32_t MeasuredWorld::contact_count() const {
 }
 
 std::uint32_t MeasuredWorld::awake_count() const {
-    const World& world = simulation_->world();
-    std::uint32_t count = 0;
-    for (BodyRow row = 0; row < world.body_count(); ++row) {
-        count += world.body_at(row).mode == BodyMode::dynamic ? 1U : 0U;
-    }
-    return count;
+    return simulation_->world().counts().awake;
 }
 
 double MeasuredWorld::penetration_mm() const {

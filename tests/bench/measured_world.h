@@ -22,7 +22,7 @@ public:
     const std::string& error() const { return error_; }
 
     std::uint32_t contact_count() const;
-    std::uint32_t awake_count() const; // dynamic bodies; none ever sleeps
+    std::uint32_t awake_count() const; // dynamic bodies
     double penetration_mm() const;     // deepest of all contact points
     std::string hash_text() const;     // 16 hex digits
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lockwind/assert.h"
 #include "lockwind/hash_tree.h"
 #include "lockwind/phase_observer.h"
 #include "lockwind/result.h"
@@ -38,6 +39,13 @@ public:
     /// Restores what save() gave. Bytes may come from a peer: anything invalid is an Error and
     /// leaves the simulation as it was.
     virtual Status load(std::span<const std::byte> bytes) = 0;
+
+    /// The same of bytes that this very simulation saved and nobody has touched: not looked at
+    /// again, so that rolling back costs a copy. Any others are the caller's mistake.
+    virtual void restore(std::span<const std::byte> bytes) {
+        const Status loaded = load(bytes);
+        LOCKWIND_ASSERT(loaded.ok());
+    }
 
     virtual StateSchema schema() const = 0;
     /// Names of the phases of advance, in order; after_phase's number indexes them.

@@ -30,6 +30,7 @@ public:
     HashTree hash_tree() const override;
     void save(std::vector<std::byte>& out) const override;
     Status load(std::span<const std::byte> bytes) override;
+    void restore(std::span<const std::byte> bytes) override;
     StateSchema schema() const override;
     std::span<const std::string_view> phases() const override;
     void observe(PhaseObserver* observer) override;

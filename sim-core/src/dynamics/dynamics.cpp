@@ -112,6 +112,10 @@ std::span<const SleepChange> Dynamics::sleep_changes() const {
     return impl_->sleep.changes();
 }
 
+std::span<const BodyRow> Dynamics::awake_rows() const {
+    return impl_->activity.rows();
+}
+
 void Dynamics::drop_derived() {
     impl_->frames.drop();
 }

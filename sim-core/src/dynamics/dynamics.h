@@ -92,6 +92,8 @@ public:
     void sleep(const DynamicsTables& tables);
     /// Of wake and sleep, in this order, each in row order.
     std::span<const SleepChange> sleep_changes() const;
+    /// Rows that the last solve moved, or would have, in row order.
+    std::span<const BodyRow> awake_rows() const;
 
     /// Drops what is only a cache; the results of later phases do not change by a bit.
     void drop_derived();

@@ -40,7 +40,8 @@ std::optional<std::uint32_t> row_to_corrupt(const World& world, std::uint32_t se
     if (world.row_count(section) == 0) {
         return std::nullopt;
     }
-    if (section == section::kBody || section == section::kBodyProperties) {
+    if (section == section::kBody || section == section::kBodyProperties ||
+        section == section::kBodySleep) {
         for (BodyRow row = 0; row < world.body_count(); ++row) {
             if (world.body_at(row).mode == BodyMode::dynamic) {
                 return row;
@@ -58,6 +59,7 @@ void add_raw(World& world, const FieldPlace& place, std::uint32_t row, std::int6
         world.section_bytes(place.section).data() + std::size_t{section.stride_bytes} * row;
     const std::uint64_t raw = read_component(field, place.component, bytes);
     write_component(field, place.component, bytes, raw + static_cast<std::uint64_t>(delta));
+    world.drop_derived();
 }
 
 void corrupt_default(World& world) {
@@ -139,6 +141,10 @@ void WorldSimulation::save(std::vector<std::byte>& out) const {
 
 Status WorldSimulation::load(std::span<const std::byte> bytes) {
     return impl_->world->load(bytes);
+}
+
+void WorldSimulation::restore(std::span<const std::byte> bytes) {
+    impl_->world->restore(bytes);
 }
 
 StateSchema WorldSimulation::schema() const {

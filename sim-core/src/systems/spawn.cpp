@@ -74,10 +74,27 @@ void Spawner::number_rows(const Table<BodyMotion>& motion) {
     }
 }
 
+bool Spawner::is_despawn_due(const Table<BodyProperties>& properties, std::uint32_t tick) {
+    if (!despawn_known_) {
+        despawn_known_ = true;
+        despawn_tick_ = 0;
+        for (const BodyProperties& body : properties.rows()) {
+            // Ticks wrap: the nearest one ahead counts.
+            const bool is_next =
+                despawn_tick_ == 0 || body.despawn_tick - tick < despawn_tick_ - tick;
+            if (body.despawn_tick != 0 && is_next) {
+                despawn_tick_ = body.despawn_tick;
+            }
+        }
+    }
+    return despawn_tick_ != 0 && despawn_tick_ == tick;
+}
+
 StepFault Spawner::apply(const DynamicsTables& tables) {
     if (created_.empty() && destroyed_count_ == 0) {
         return StepFault::none;
     }
+    forget_despawns();
     sort_created();
     const std::uint32_t old_count = tables.motion.count();
     const std::uint32_t kept = old_count - destroyed_count_;

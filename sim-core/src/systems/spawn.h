@@ -28,7 +28,8 @@ constexpr BodyId spawned_id(BodyId spawner, std::uint32_t spawn_count) {
 }
 
 /// Collects bodies to make and to destroy, then merges them into the id-sorted tables at once.
-/// Empty between ticks: no state. Allocates on construction only.
+/// Empty between ticks: no state, but a note of when the next one is due.
+/// Allocates on construction only.
 class Spawner {
 public:
     /// At most `create_capacity` creations a merge.
@@ -43,6 +44,12 @@ public:
     std::span<const BodyRecord> created() const { return created_; }
     void sort_created();
 
+    /// Whether bodies of the tables are due to go in this tick, see BodyProperties::despawn_tick.
+    /// Looks at all of them only where some came or went, or are due.
+    bool is_despawn_due(const Table<BodyProperties>& properties, std::uint32_t tick);
+    /// The tables are not those of before.
+    void forget_despawns() { despawn_known_ = false; }
+
     /// Makes tables of the bodies that stay and the new ones, in id order, and renumbers pairs and
     /// manifolds. Empties the queues. bodies_full leaves the tables as they were.
     StepFault apply(const DynamicsTables& tables);
@@ -54,6 +61,8 @@ private:
     std::vector<std::uint8_t> destroyed_; // by row
     std::uint32_t destroyed_count_ = 0;
     std::vector<BodyRow> new_row_of_; // by row before the merge
+    bool despawn_known_ = false;
+    std::uint32_t despawn_tick_ = 0; // the next one where it is known; 0: none
 };
 
 } // namespace lockwind

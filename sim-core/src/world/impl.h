@@ -27,6 +27,7 @@ struct World::Impl {
     DynamicsTables tables() { return tables_of(arena); }
     static DynamicsTables tables_of(StateArena& arena);
     Error fault_error();
+    void begin_anew();
     /// Whether a state can be stepped; see validate.h.
     Status validate(StateArena& state, const DynamicsTables* known);
 

@@ -44,9 +44,21 @@ Status World::load(std::span<const std::byte> bytes) {
         return valid;
     }
     std::swap(impl_->arena, impl_->staging);
-    impl_->events.clear();
-    impl_->fault = StepFault::none;
+    impl_->begin_anew();
     return Success{};
+}
+
+void World::restore(std::span<const std::byte> bytes) {
+    const Status loaded = load_canonical(impl_->arena, bytes);
+    LOCKWIND_ASSERT(loaded.ok());
+    impl_->begin_anew();
+}
+
+/// After another state has come: nothing of the steps before counts.
+void World::Impl::begin_anew() {
+    events.clear();
+    spawner.forget_despawns();
+    fault = StepFault::none;
 }
 
 StateSchema World::schema() {
@@ -69,6 +81,7 @@ Status World::check() const {
 
 void World::drop_derived() {
     impl_->dynamics.drop_derived();
+    impl_->spawner.forget_despawns();
 }
 
 } // namespace lockwind

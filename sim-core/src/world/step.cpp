@@ -182,18 +182,26 @@ void Step::destroy(BodyRow row) {
 }
 
 void Step::remove_bodies() {
-    for (BodyRow row = 0; row < tables_.motion.count(); ++row) {
-        const BodyProperties& properties = tables_.properties[row];
-        if (properties.despawn_tick == tick_low() && properties.despawn_tick != 0) {
-            destroy(row);
-        } else if (properties.mode != static_cast<std::uint8_t>(BodyMode::fixed) &&
-                   is_outside(tables_.motion[row], world_.settings.bounds)) {
-            const Slot slot = slot_of(world_.players(), id(row));
-            if (slot == kNoIndex) {
+    if (world_.spawner.is_despawn_due(tables_.properties, tick_low())) {
+        for (BodyRow row = 0; row < tables_.motion.count(); ++row) {
+            if (tables_.properties[row].despawn_tick == tick_low()) {
                 destroy(row);
-            } else {
-                return_pod(slot, row);
             }
+        }
+    }
+    // Who sleeps has not left.
+    for (const BodyRow row : world_.dynamics.awake_rows()) {
+        const bool is_fixed =
+            tables_.properties[row].mode == static_cast<std::uint8_t>(BodyMode::fixed);
+        if (is_fixed || world_.spawner.is_destroyed(row) ||
+            !is_outside(tables_.motion[row], world_.settings.bounds)) {
+            continue;
+        }
+        const Slot slot = slot_of(world_.players(), id(row));
+        if (slot == kNoIndex) {
+            destroy(row);
+        } else {
+            return_pod(slot, row);
         }
     }
 }

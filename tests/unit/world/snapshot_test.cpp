@@ -26,6 +26,49 @@ Row* rows(World& world, std::uint32_t section) {
     return reinterpret_cast<Row*>(world.section_bytes(section).data());
 }
 
+TEST(Snapshot, RestoringItsOwnGoesOnLikeLoadingIt) {
+    const WorldPtr world = make_world(busy_scene(40, 2));
+    const WorldPtr loaded = make_world(busy_scene(40, 2));
+    for (int tick = 0; tick < 60; ++tick) {
+        step_busy(*world);
+    }
+    std::vector<std::byte> bytes;
+    world->save(bytes);
+    ASSERT_TRUE(loaded->load(bytes).ok());
+    for (int tick = 0; tick < 100; ++tick) {
+        step_busy(*world); // bodies come and go meanwhile
+    }
+    world->restore(bytes);
+    EXPECT_TRUE(world->events().empty());
+    for (int tick = 0; tick < 300; ++tick) { // beyond the balls' lifetime
+        step_busy(*world);
+        step_busy(*loaded);
+        ASSERT_EQ(world->state_hash(), loaded->state_hash()) << tick;
+    }
+    EXPECT_GT(world->counts().destroyed_total, 0U);
+}
+
+TEST(Snapshot, ABallThatWasGoneGoesAgainAfterRestoring) {
+    WorldDefinition scene;
+    scene.bodies.push_back(ground(1));
+    add_pod(scene, 2, {0, 1, 0});
+    const WorldPtr world = make_world(scene);
+    PlayerInput shoot;
+    shoot.buttons = PlayerInput::kShoot;
+    ASSERT_TRUE(world->step(inputs_of({shoot})).ok());
+    ASSERT_EQ(world->body_count(), 3U);
+    std::vector<std::byte> bytes;
+    world->save(bytes);
+    for (int run = 0; run < 2; ++run) {
+        const std::uint32_t lifetime = scene.pods[0].ball_lifetime_ticks;
+        step_idle(*world, static_cast<int>(lifetime) - 1);
+        EXPECT_EQ(world->body_count(), 3U) << run;
+        step_idle(*world, 20);
+        EXPECT_EQ(world->body_count(), 2U) << run;
+        world->restore(bytes);
+    }
+}
+
 TEST(Snapshot, RestoresEveryBit) {
     const WorldPtr world = busy_world();
     std::vector<std::byte> bytes;
