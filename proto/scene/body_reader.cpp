@@ -38,6 +38,11 @@ bool inside(Real value, Real bound) {
     return -bound <= value && value <= bound;
 }
 
+/// The text's rules are those of the core, one further.
+CombineRule rule_of(scene_text::CombineRule rule, CombineRule fallback) {
+    return rule == scene_text::given ? fallback : static_cast<CombineRule>(rule - 1);
+}
+
 bool is_arranged(const scene_text::Body& body) {
     return body.arrangement_case() != scene_text::Body::ARRANGEMENT_NOT_SET;
 }
@@ -46,8 +51,9 @@ bool is_arranged(const scene_text::Body& body) {
 
 BodyReader::BodyReader(const scene_text::Scene& scene,
                        const FieldReader& reader,
+                       const LayerReader& layers,
                        WorldDefinition& world)
-    : scene_(scene), reader_(reader), world_(world) {}
+    : scene_(scene), reader_(reader), layers_(layers), world_(world) {}
 
 void BodyReader::read_body(int index) {
     const scene_text::Body& body = scene_.body(index);
@@ -123,6 +129,10 @@ BodyDefinition BodyReader::read_common(const scene_text::Body& body,
     read_turn(body, reader, definition);
     read_shape(body, reader, definition);
     read_matter(body, reader, definition);
+    definition.layer = layers_.read_layer(body.layer(), reader);
+    definition.mask = layers_.read_mask(body.ignores(), reader);
+    definition.sensor = body.sensor();
+    definition.can_sleep = !body.has_can_sleep() || body.can_sleep();
     return definition;
 }
 
@@ -207,17 +217,20 @@ void BodyReader::read_shape(const scene_text::Body& body,
 void BodyReader::read_matter(const scene_text::Body& body,
                              const FieldReader& reader,
                              BodyDefinition& definition) const {
-    const auto read_from = [&definition](const FieldReader& source) {
+    const auto read_from = [&definition](const auto& message, const FieldReader& source) {
         definition.density = source.real("density", definition.density, kDensity);
         definition.friction = source.real("friction", definition.friction, kFriction);
         definition.restitution = source.real("restitution", definition.restitution, kRestitution);
+        definition.friction_rule = rule_of(message.friction_rule(), definition.friction_rule);
+        definition.restitution_rule =
+            rule_of(message.restitution_rule(), definition.restitution_rule);
     };
     bool known = body.material().empty();
     std::string names;
     for (int index = 0; index < scene_.material_size(); ++index) {
         const std::string& name = scene_.material(index).name();
         if (!known && name == body.material()) {
-            read_from(reader_.nested("material", index));
+            read_from(scene_.material(index), reader_.nested("material", index));
             known = true;
         }
         names += (index == 0 ? "" : ", ") + name;
@@ -227,12 +240,11 @@ void BodyReader::read_matter(const scene_text::Body& body,
                     "\"" + body.material() + "\" is not defined; " +
                         (names.empty() ? "the scene has no materials" : "there is: " + names));
     }
-    read_from(reader);
+    read_from(body, reader);
     if (reader.has("mass") && reader.has("density")) {
         reader.fail("mass", "and density are both given; give one");
     }
     definition.mass = reader.real("mass", 0, kMass);
-    definition.can_sleep = !body.has_can_sleep() || body.can_sleep();
     check_mass(reader, definition);
 }
 

@@ -3,6 +3,7 @@
 #include "scene.pb.h"
 #include "scene/arrangement.h"
 #include "scene/field_reader.h"
+#include "scene/layer_reader.h"
 
 #include "lockwind/world_definition.h"
 
@@ -14,7 +15,10 @@ namespace lockwind {
 /// Appends the bodies and pods of a scene to a world definition whose settings are read.
 class BodyReader {
 public:
-    BodyReader(const scene_text::Scene& scene, const FieldReader& reader, WorldDefinition& world);
+    BodyReader(const scene_text::Scene& scene,
+               const FieldReader& reader,
+               const LayerReader& layers,
+               WorldDefinition& world);
 
     /// body[index]: one body, or as many as its arrangement has.
     void read_body(int index);
@@ -43,6 +47,7 @@ private:
 
     const scene_text::Scene& scene_;
     const FieldReader& reader_;
+    const LayerReader& layers_;
     WorldDefinition& world_;
 };
 

@@ -3,6 +3,7 @@
 #include "scene.pb.h"
 #include "scene/body_reader.h"
 #include "scene/field_reader.h"
+#include "scene/layer_reader.h"
 #include "scene/settings_reader.h"
 #include "scene/text_parser.h"
 
@@ -42,7 +43,9 @@ read_scene(std::string_view text, std::string_view file_name, const SceneOptions
     WorldDefinition& world = content.world;
     read_name(scene, reader, world);
     world.settings = read_settings(reader, options);
-    BodyReader bodies(scene, reader, world);
+    const LayerReader layers(scene, reader);
+    world.settings.layer_masks = layers.masks();
+    BodyReader bodies(scene, reader, layers, world);
     for (int index = 0; index < scene.body_size() && !errors.any(); ++index) {
         bodies.read_body(index);
     }

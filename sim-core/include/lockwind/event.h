@@ -16,6 +16,8 @@ enum class EventType : std::uint8_t {
     respawned = 6,     // a: a pod put back at its start because it left the bounds, b: 0
     fell_asleep = 7,   // a: the body, b: 0
     woke = 8,          // a: the body, b: 0
+    sensor_begin = 9,  // a < b, one of them a sensor; value 0
+    sensor_end = 10,   // a < b; value 0
 };
 
 /// Something that happened in a tick. A tick's events are ordered by (type, a, b, value).

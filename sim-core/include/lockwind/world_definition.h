@@ -4,6 +4,7 @@
 #include "lockwind/types.h"
 #include "lockwind/vector.h"
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -15,19 +16,37 @@ inline constexpr std::uint32_t kWorldTickRateHzMax = 240;
 
 enum class BodyMode : std::uint8_t { fixed = 0, kinematic = 1, dynamic = 2 };
 
+/// How two bodies' values become the pair's. Where their rules differ, the later one counts.
+enum class CombineRule : std::uint8_t {
+    average = 0,
+    geometric_mean = 1,
+    minimum = 2,
+    multiply = 3,
+    maximum = 4,
+};
+
+/// Groups of bodies that meet or pass through each other.
+inline constexpr std::uint32_t kLayerCount = 32;
+inline constexpr std::uint32_t kAllLayers = 0xffffffffU;
+
 struct BodyDefinition {
     BodyId id = 0; // 1 .. 2^32 - 1, unique
     BodyMode mode = BodyMode::dynamic;
     ShapeDefinition shape;
-    Vec3 position;          // m
-    RealQuat orientation;   // x y z w; normalised on creation, must not be 0
-    Vec3 linear_velocity;   // m/s
-    Vec3 angular_velocity;  // rad/s
-    Real density = 1000.0;  // kg/m^3; used where mass is 0
-    Real mass = 0.0;        // kg; overrides density where > 0
-    Real friction = 0.5;    // Coulomb; a pair uses the geometric mean
-    Real restitution = 0.0; // a pair uses the larger
-    bool can_sleep = true;  // false keeps what it touches awake too
+    Vec3 position;         // m
+    RealQuat orientation;  // x y z w; normalised on creation, must not be 0
+    Vec3 linear_velocity;  // m/s
+    Vec3 angular_velocity; // rad/s
+    Real density = 1000.0; // kg/m^3; used where mass is 0
+    Real mass = 0.0;       // kg; overrides density where > 0
+    Real friction = 0.5;   // Coulomb
+    Real restitution = 0.0;
+    CombineRule friction_rule = CombineRule::geometric_mean;
+    CombineRule restitution_rule = CombineRule::maximum;
+    std::uint32_t layer = 0;         // below kLayerCount
+    std::uint32_t mask = kAllLayers; // bit L: meets bodies of layer L whose masks agree
+    bool sensor = false;             // tells what overlaps it, and stops nothing
+    bool can_sleep = true;           // false keeps what it touches awake too
 };
 
 /// A player-controlled body: thrust along its +z, turn about y, jump, shoot a ball.
@@ -44,6 +63,12 @@ struct PodDefinition {
     std::uint32_t ball_lifetime_ticks = 180;
 };
 
+constexpr std::array<std::uint32_t, kLayerCount> all_layers() {
+    std::array<std::uint32_t, kLayerCount> masks{};
+    masks.fill(kAllLayers);
+    return masks;
+}
+
 struct WorldSettings {
     std::uint32_t tick_rate_hz = 60; // kWorldTickRateHzMin .. kWorldTickRateHzMax
     std::uint32_t substeps = 4;      // 1 .. 16
@@ -54,6 +79,8 @@ struct WorldSettings {
     Real sleep_seconds = 0.5;        // still for so long, an island sleeps; 0: none ever does
     Real bounds = 1000.0;            // m from the origin; dynamic bodies outside are destroyed
     std::uint64_t seed = 1;
+    /// By layer, the layers that its bodies meet; both must agree.
+    std::array<std::uint32_t, kLayerCount> layer_masks = all_layers();
     // Capacities; 0 derives one from the bodies of the scene.
     std::uint32_t body_capacity = 0;
     std::uint32_t pair_capacity = 0;

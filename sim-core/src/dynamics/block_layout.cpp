@@ -1,5 +1,7 @@
 #include "dynamics/block_layout.h"
 
+#include "dynamics/pairing.h"
+
 #include "lockwind/world_definition.h"
 
 #include <algorithm>
@@ -35,9 +37,11 @@ void Colouring::run(const DynamicsTables& tables, const Activity& activity) {
         if (!is_solvable(pair, tables)) {
             continue;
         }
-        const bool a_moves = tables.properties[pair.row_a].mode == kDynamic;
-        const bool b_moves = tables.properties[pair.row_b].mode == kDynamic;
-        if (!a_moves && !b_moves) {
+        const BodyProperties& a = tables.properties[pair.row_a];
+        const BodyProperties& b = tables.properties[pair.row_b];
+        const bool a_moves = a.mode == kDynamic;
+        const bool b_moves = b.mode == kDynamic;
+        if ((!a_moves && !b_moves) || is_sensing(a, b)) {
             continue;
         }
         const std::uint64_t allowed = a_moves && b_moves ? kDynamicMask : ~kDynamicMask;

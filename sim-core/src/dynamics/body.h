@@ -37,11 +37,16 @@ struct BodyProperties {
     std::uint8_t mode;               // BodyMode
     std::uint8_t shape;              // ShapeType
     std::uint8_t can_sleep;          // 0, 1
+    std::uint8_t sensor;             // 0, 1
+    std::uint32_t mask;              // bit L: meets bodies of layer L
+    std::uint8_t layer;              // below kLayerCount
+    std::uint8_t friction_rule;      // CombineRule
+    std::uint8_t restitution_rule;   // CombineRule
     std::uint8_t zero;
     std::uint32_t spawn_count;  // bodies this one has spawned
     std::uint32_t despawn_tick; // low 32 bits of the tick that destroys it; 0 for never
 };
-static_assert(sizeof(BodyProperties) == 64);
+static_assert(sizeof(BodyProperties) == 72);
 
 /// Whether a body rests: row of "body_sleep", same row as its BodyMotion. Apart and narrow, so that
 /// a step sees at a glance who is awake.
@@ -76,6 +81,11 @@ inline constexpr std::array kBodyPropertiesFields{
     LOCKWIND_FIELD(BodyProperties, mode, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, shape, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, can_sleep, 0, "", ""),
+    LOCKWIND_FIELD(BodyProperties, sensor, 0, "", ""),
+    LOCKWIND_FIELD(BodyProperties, mask, 0, "", ""),
+    LOCKWIND_FIELD(BodyProperties, layer, 0, "", ""),
+    LOCKWIND_FIELD(BodyProperties, friction_rule, 0, "", ""),
+    LOCKWIND_FIELD(BodyProperties, restitution_rule, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, zero, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, spawn_count, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, despawn_tick, 0, "tick", ""),

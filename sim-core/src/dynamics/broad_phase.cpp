@@ -1,5 +1,6 @@
 #include "dynamics/broad_phase.h"
 
+#include "dynamics/pairing.h"
 #include "dynamics/solver_format.h"
 #include "geometry/bounds.h"
 
@@ -17,7 +18,6 @@ constexpr std::int64_t kPredictionMax = 1 << 15; // 0.5 m, Q15.16
 constexpr std::int64_t kPredictionTicks = 3;
 
 constexpr auto kFixed = static_cast<std::uint8_t>(BodyMode::fixed);
-constexpr auto kDynamic = static_cast<std::uint8_t>(BodyMode::dynamic);
 
 Bounds stored_bounds(const BodyMotion& motion) {
     Bounds bounds{};
@@ -110,14 +110,14 @@ bool BroadPhase::find_new_pairs(const DynamicsTables& tables) {
     grid_.build({bounds_.data(), tables.motion.count()});
     bool fits = true;
     for (const BodyRow row : moved_) {
-        const bool is_dynamic = tables.properties[row].mode == kDynamic;
+        const BodyProperties& properties = tables.properties[row];
         const Bounds before = stored_bounds(tables.motion[row]);
         grid_.query(bounds_[row], [&](BodyRow other) {
             // Two moved bodies find each other twice: the lower row's find counts.
             if (other == row || (is_moved_[other] != 0 && other < row)) {
                 return;
             }
-            if (!is_dynamic && tables.properties[other].mode != kDynamic) {
+            if (!may_meet(properties, tables.properties[other])) {
                 return;
             }
             const Bounds other_before = stored_bounds(tables.motion[other]);

@@ -1,6 +1,7 @@
 #include "dynamics/contact_solver.h"
 
 #include "dynamics/lanes.h"
+#include "dynamics/pairing.h"
 
 #include "lockwind/integer.h"
 #include "lockwind/overflow.h"
@@ -47,14 +48,6 @@ std::int32_t radius_ratio(std::int32_t radius_min, std::int32_t radius) {
     return static_cast<std::int32_t>(std::min(ratio, std::int64_t{4} << kCoefficientFraction));
 }
 
-std::int32_t mean_friction(std::int32_t a, std::int32_t b) {
-    if (a == b) {
-        return a;
-    }
-    const auto product = static_cast<std::uint64_t>(a) * static_cast<std::uint64_t>(b);
-    return static_cast<std::int32_t>(floor_sqrt(product));
-}
-
 /// What a contact's lane is made from.
 struct PairReader {
     const StepConstants& constants;
@@ -84,7 +77,7 @@ void PairReader::read(ContactBlock& block, int lane, PairTerms& terms) const {
     block.share_a[lane] = a_moves && b_moves ? mass_share(a.inverse_mass, b.inverse_mass)
                                              : (a_moves ? kCoefficientOne : 0);
     block.share_b[lane] = kCoefficientOne - block.share_a[lane];
-    block.friction[lane] = mean_friction(a.friction, b.friction);
+    block.friction[lane] = combine(a.friction, b.friction, a.friction_rule, b.friction_rule);
     const bool a_is_smaller = a_moves && (!b_moves || a.gyration_radius <= b.gyration_radius);
     const BodyProperties& smaller = a_is_smaller ? a : b;
     block.twist_lever_a[lane] =
@@ -245,8 +238,10 @@ void ContactSolver::write(const DynamicsTables& tables) {
 void ContactSolver::bounce(const DynamicsTables& tables, SolverBodies& bodies, Impact& impact) {
     ContactBlock& block = layout_.blocks()[impact.block];
     const BodyRow rows[2] = {block.row_a[impact.lane], block.row_b[impact.lane]};
+    const BodyProperties& a = tables.properties[rows[0]];
+    const BodyProperties& b = tables.properties[rows[1]];
     const std::int64_t restitution =
-        std::max(tables.properties[rows[0]].restitution, tables.properties[rows[1]].restitution);
+        combine(a.restitution, b.restitution, a.restitution_rule, b.restitution_rule);
     if (restitution <= 0) {
         return;
     }

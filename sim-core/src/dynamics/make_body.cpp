@@ -156,6 +156,12 @@ void check_definition(const BodyDefinition& definition,
                     "is unknown");
     check_shape(definition.shape, definition.mode, checker);
     check_motion(definition, settings, checker);
+    checker.require(
+        definition.layer < kLayerCount, "layer", "is out of range; it must be within 0 .. 31");
+    checker.require(
+        definition.friction_rule <= CombineRule::maximum, "friction_rule", "is unknown");
+    checker.require(
+        definition.restitution_rule <= CombineRule::maximum, "restitution_rule", "is unknown");
     checker.range("density", definition.density, 0, kDensityMax, " kg/m^3");
     checker.range("mass", definition.mass, 0, kBodyMassMax, " kg");
     checker.range("friction", definition.friction, 0, kFrictionMax, "");
@@ -341,6 +347,11 @@ Status make_body(const BodyDefinition& definition,
     new_properties.mode = static_cast<std::uint8_t>(definition.mode);
     new_properties.shape = static_cast<std::uint8_t>(definition.shape.type);
     new_properties.can_sleep = definition.can_sleep ? 1 : 0;
+    new_properties.sensor = definition.sensor ? 1 : 0;
+    new_properties.layer = static_cast<std::uint8_t>(definition.layer);
+    new_properties.mask = definition.mask & settings.layer_masks[definition.layer];
+    new_properties.friction_rule = static_cast<std::uint8_t>(definition.friction_rule);
+    new_properties.restitution_rule = static_cast<std::uint8_t>(definition.restitution_rule);
     new_properties.friction = convert<Coefficient>(definition.friction).raw();
     new_properties.restitution = convert<Coefficient>(definition.restitution).raw();
     fill_size(definition.shape, new_properties);

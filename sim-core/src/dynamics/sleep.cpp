@@ -1,5 +1,6 @@
 #include "dynamics/sleep.h"
 
+#include "dynamics/pairing.h"
 #include "dynamics/solver_format.h"
 
 #include "lockwind/integer.h"
@@ -37,9 +38,15 @@ bool is_dynamic(const DynamicsTables& tables, BodyRow row) {
     return tables.properties[row].mode == kDynamic;
 }
 
+/// Whether the two touch, and mind it.
+bool is_pressing(const Pair& pair, const DynamicsTables& tables) {
+    return pair.point_count != 0 &&
+           !is_sensing(tables.properties[pair.row_a], tables.properties[pair.row_b]);
+}
+
 /// Whether the pair holds two dynamic bodies together.
 bool is_bond(const Pair& pair, const DynamicsTables& tables) {
-    return pair.point_count != 0 && is_dynamic(tables, pair.row_a) &&
+    return is_pressing(pair, tables) && is_dynamic(tables, pair.row_a) &&
            is_dynamic(tables, pair.row_b);
 }
 
@@ -66,7 +73,7 @@ bool Sleep::wake(const DynamicsTables& tables, const Activity& activity) {
     rows_.clear();
     for (const std::uint32_t index : activity.pairs()) {
         const Pair& pair = tables.pairs[index];
-        if (pair.point_count == 0) {
+        if (!is_pressing(pair, tables)) {
             continue;
         }
         const bool a_wakes = is_woken_by(pair.row_a, pair.row_b, tables, activity);
@@ -153,7 +160,7 @@ bool Sleep::count_still_ticks(const DynamicsTables& tables, std::span<const Body
 void Sleep::keep_carried_awake(const DynamicsTables& tables, const Activity& activity) {
     for (const std::uint32_t index : activity.pairs()) {
         const Pair& pair = tables.pairs[index];
-        if (pair.point_count == 0) {
+        if (!is_pressing(pair, tables)) {
             continue;
         }
         const bool a_carries =

@@ -1,6 +1,7 @@
 #include "systems/pod.h"
 
 #include "dynamics/make_body.h"
+#include "dynamics/pairing.h"
 #include "systems/motion.h"
 
 #include "lockwind/rng.h"
@@ -141,7 +142,8 @@ std::vector<Player> PodSystem::initial_players() const {
 void PodSystem::mark_supported(const DynamicsTables& tables) {
     std::fill_n(supported_.begin(), tables.motion.count(), std::uint8_t{0});
     for (const Pair& pair : tables.pairs.rows()) {
-        if (pair.manifold == kNoIndex) {
+        if (pair.manifold == kNoIndex ||
+            is_sensing(tables.properties[pair.row_a], tables.properties[pair.row_b])) {
             continue;
         }
         // The normal points from A to B: upwards, A holds B.

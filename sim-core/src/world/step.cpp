@@ -1,4 +1,5 @@
 #include "dynamics/make_body.h"
+#include "dynamics/pairing.h"
 #include "world/impl.h"
 
 #include "lockwind/phase_observer.h"
@@ -31,6 +32,7 @@ public:
     StepFault next_tick();
 
 private:
+    EventType event_of(const ContactChange& change) const;
     BodyId id(BodyRow row) const { return tables_.motion[row].id; }
     std::uint32_t tick_low() const { return static_cast<std::uint32_t>(tick_); }
     void report_contacts();
@@ -146,9 +148,16 @@ StepFault Step::spawns_despawns() {
     return spawner.apply(tables_);
 }
 
+EventType Step::event_of(const ContactChange& change) const {
+    if (is_sensing(tables_.properties[change.row_a], tables_.properties[change.row_b])) {
+        return change.begin ? EventType::sensor_begin : EventType::sensor_end;
+    }
+    return change.begin ? EventType::contact_begin : EventType::contact_end;
+}
+
 void Step::report_contacts() {
     for (const ContactChange& change : world_.dynamics.contact_changes()) {
-        const EventType type = change.begin ? EventType::contact_begin : EventType::contact_end;
+        const EventType type = event_of(change);
         world_.events.add(type, id(change.row_a), id(change.row_b), 0);
     }
     for (const ContactHit& hit : world_.dynamics.contact_hits()) {

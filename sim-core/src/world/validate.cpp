@@ -2,6 +2,7 @@
 
 #include "dynamics/bounds_grid.h"
 #include "dynamics/make_body.h"
+#include "dynamics/pairing.h"
 #include "geometry/fixed_geometry.h"
 #include "geometry/manifold.h"
 #include "systems/spawn.h"
@@ -155,6 +156,16 @@ const char* bad_properties_field(const BodyProperties& properties) {
     if (properties.can_sleep > 1) {
         return "can_sleep";
     }
+    if (properties.sensor > 1) {
+        return "sensor";
+    }
+    if (properties.layer >= kLayerCount) {
+        return "layer";
+    }
+    constexpr auto kLastRule = static_cast<std::uint8_t>(CombineRule::maximum);
+    if (properties.friction_rule > kLastRule || properties.restitution_rule > kLastRule) {
+        return "friction_rule or restitution_rule";
+    }
     if (properties.zero != 0) {
         return "zero";
     }
@@ -174,10 +185,6 @@ const char* bad_sleep_field(const BodySleep& sleep,
     return sleep.zero != 0 ? "zero" : nullptr;
 }
 
-bool is_dynamic(const DynamicsTables& tables, BodyRow row) {
-    return tables.properties[row].mode == static_cast<std::uint8_t>(BodyMode::dynamic);
-}
-
 const char* bad_pair_field(const DynamicsTables& tables, std::uint32_t index) {
     const Pair& pair = tables.pairs[index];
     if (pair.row_a >= pair.row_b || pair.row_b >= tables.motion.count()) {
@@ -190,7 +197,7 @@ const char* bad_pair_field(const DynamicsTables& tables, std::uint32_t index) {
             return "row_a";
         }
     }
-    if (!is_dynamic(tables, pair.row_a) && !is_dynamic(tables, pair.row_b)) {
+    if (!may_meet(tables.properties[pair.row_a], tables.properties[pair.row_b])) {
         return "row_a";
     }
     // The broad phase takes a pair whose bounds do not overlap for a new one when they do.

@@ -91,6 +91,52 @@ TEST(Scene, TurnsRightHandedAboutAnAxisOfAnyLength) {
     EXPECT_EQ(turn.x, Real(0));
 }
 
+TEST(Scene, CombineRulesComeFromMaterialsAndBodies) {
+    const WorldDefinition scene =
+        parse("name: \"t\" material { name: \"ice\" friction_rule: minimum } "
+              "body { sphere { radius: 1 } } "
+              "body { material: \"ice\" restitution_rule: average sphere { radius: 1 } } "
+              "body { material: \"ice\" friction_rule: multiply sphere { radius: 1 } }");
+    EXPECT_EQ(scene.bodies[0].friction_rule, CombineRule::geometric_mean);
+    EXPECT_EQ(scene.bodies[0].restitution_rule, CombineRule::maximum);
+    EXPECT_EQ(scene.bodies[1].friction_rule, CombineRule::minimum);
+    EXPECT_EQ(scene.bodies[1].restitution_rule, CombineRule::average);
+    EXPECT_EQ(scene.bodies[2].friction_rule, CombineRule::multiply);
+}
+
+TEST(Scene, LayersBecomeNumbersAndMasks) {
+    const WorldDefinition scene =
+        parse("name: \"t\" layer { name: \"debris\" ignores: \"debris\" ignores: \"player\" } "
+              "layer { name: \"player\" } "
+              "body { sphere { radius: 1 } } "
+              "body { layer: \"debris\" sphere { radius: 1 } } "
+              "body { layer: \"player\" ignores: \"default\" sensor: true sphere { radius: 1 } }");
+    EXPECT_EQ(scene.settings.layer_masks[0], kAllLayers);
+    EXPECT_EQ(scene.settings.layer_masks[1], kAllLayers & ~0b110U);
+    EXPECT_EQ(scene.settings.layer_masks[2], kAllLayers);
+    EXPECT_EQ(scene.bodies[0].layer, 0U);
+    EXPECT_EQ(scene.bodies[1].layer, 1U);
+    EXPECT_EQ(scene.bodies[2].layer, 2U);
+    EXPECT_EQ(scene.bodies[2].mask, kAllLayers & ~1U);
+    EXPECT_TRUE(scene.bodies[2].sensor);
+    EXPECT_FALSE(scene.bodies[1].sensor);
+}
+
+TEST(Scene, WrongLayersAreNamed) {
+    EXPECT_EQ(body_error("body { layer: \"x\" sphere { radius: 1 } }"),
+              "t.textproto:2:8: body[0].layer \"x\" is no layer of the scene; there is: default");
+    EXPECT_EQ(error_of("name: \"t\" layer { name: \"a\" }\nlayer { name: \"a\" }"),
+              "t.textproto:2:9: layer[1].name \"a\" is a layer already; \"default\" comes first");
+    EXPECT_EQ(error_of("name: \"t\" layer { name: \"a\"\nignores: \"b\" }"),
+              "t.textproto:1:11: layer[0].ignores \"b\" is no layer of the scene; there is: "
+              "default, a");
+    std::string many = "name: \"t\"";
+    for (int index = 0; index < 32; ++index) {
+        many += " layer { name: \"l" + std::to_string(index) + "\" }";
+    }
+    EXPECT_NE(error_of(many).find("there are more than 31 layers"), std::string::npos);
+}
+
 TEST(Scene, MaterialsGiveDefaultsThatABodyOverrides) {
     const WorldDefinition world =
         parse("name: \"t\" material { name: \"ice\" density: 917 friction: 0.02 restitution: 0.1 } "
