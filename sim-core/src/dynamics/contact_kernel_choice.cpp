@@ -14,13 +14,13 @@ bool is_available(Simd simd) {
         return true;
 #if LOCKWIND_SIMD_X86
     case Simd::sse4:
-        return __builtin_cpu_supports("sse4.2") != 0;
+        return __builtin_cpu_supports("sse4.2");
     case Simd::avx2:
-        return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("bmi2") != 0 &&
-               __builtin_cpu_supports("fma") != 0;
+        return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2") &&
+               __builtin_cpu_supports("fma");
     case Simd::avx512:
-        return is_available(Simd::avx2) && __builtin_cpu_supports("avx512bw") != 0 &&
-               __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0;
+        return is_available(Simd::avx2) && __builtin_cpu_supports("avx512bw") &&
+               __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
 #endif
 #if LOCKWIND_SIMD_NEON
     case Simd::neon:
