@@ -42,7 +42,7 @@ read_scene(std::string_view text, std::string_view file_name, const SceneOptions
     content.description = scene.description();
     WorldDefinition& world = content.world;
     read_name(scene, reader, world);
-    world.settings = read_settings(reader, options);
+    world.settings = read_settings(scene, reader, options);
     const LayerReader layers(scene, reader);
     world.settings.layer_masks = layers.masks();
     BodyReader bodies(scene, reader, layers, world);

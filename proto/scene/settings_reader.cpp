@@ -8,8 +8,10 @@ constexpr Range kCapacity{1, 1'000'000, ""};
 
 } // namespace
 
-WorldSettings read_settings(const FieldReader& scene, const SceneOptions& options) {
-    const FieldReader reader = scene.nested("settings");
+WorldSettings read_settings(const scene_text::Scene& scene,
+                            const FieldReader& scene_reader,
+                            const SceneOptions& options) {
+    const FieldReader reader = scene_reader.nested("settings");
     WorldSettings settings;
     settings.tick_rate_hz = reader.count("tick_rate_hz", settings.tick_rate_hz, kTickRate);
     settings.substeps = reader.count("substeps", settings.substeps, {1, 16, ""});
@@ -21,6 +23,7 @@ WorldSettings read_settings(const FieldReader& scene, const SceneOptions& option
     settings.sleep_speed = reader.real("sleep_speed", settings.sleep_speed, {0, 10, "m/s"});
     settings.sleep_seconds = reader.real("sleep_seconds", settings.sleep_seconds, {0, 60, "s"});
     settings.bounds = reader.real("bounds", settings.bounds, {1, 16'000, "m"});
+    settings.bounds_policy = static_cast<BoundsPolicy>(scene.settings().bounds_policy());
     settings.body_capacity = reader.count("body_capacity", 0, kCapacity);
     settings.pair_capacity = reader.count("pair_capacity", 0, kCapacity);
     settings.manifold_capacity = reader.count("manifold_capacity", 0, kCapacity);

@@ -63,6 +63,13 @@ struct PodDefinition {
     std::uint32_t ball_lifetime_ticks = 180;
 };
 
+/// What becomes of a body that moves out of the bounds.
+enum class BoundsPolicy : std::uint8_t {
+    destroy = 0, // it is destroyed; a pod is put back at its start
+    wrap = 1,    // it goes on from the opposite side
+    error = 2,   // the step fails and names it
+};
+
 constexpr std::array<std::uint32_t, kLayerCount> all_layers() {
     std::array<std::uint32_t, kLayerCount> masks{};
     masks.fill(kAllLayers);
@@ -77,7 +84,8 @@ struct WorldSettings {
     Real angular_speed_max = 100.0;  // rad/s
     Real sleep_speed = 0.05;         // m/s, of any point of a body that counts as still
     Real sleep_seconds = 0.5;        // still for so long, an island sleeps; 0: none ever does
-    Real bounds = 1000.0;            // m from the origin; dynamic bodies outside are destroyed
+    Real bounds = 1000.0;            // m from the origin, on each axis
+    BoundsPolicy bounds_policy = BoundsPolicy::destroy;
     std::uint64_t seed = 1;
     /// By layer, the layers that its bodies meet; both must agree.
     std::array<std::uint32_t, kLayerCount> layer_masks = all_layers();

@@ -35,13 +35,15 @@ struct DynamicsTables {
     Table<Manifold> manifolds;
 };
 
-/// A capacity that ran out. The tables stay whole: no row is half-written.
+/// A capacity that ran out, or a body that left the bounds where that is an error. The tables stay
+/// whole: no row is half-written.
 enum class StepFault : std::uint8_t {
     none = 0,
     bodies_full = 1,
     pairs_full = 2,
     manifolds_full = 3,
     events_full = 4,
+    bounds_left = 5,
 };
 
 /// A pair that began or ceased to touch in this tick's narrow phase; in pair order.

@@ -48,6 +48,7 @@ struct World::Impl {
     Spawner spawner;
     EventLog events;
     StepFault fault = StepFault::none;
+    BodyId fault_body = 0;                   // that left the bounds
     std::vector<std::uint8_t> manifold_seen; // by row of section "manifold", while checking a load
 };
 

@@ -38,7 +38,9 @@ private:
     void report_contacts();
     void score_hits();
     void destroy(BodyRow row);
-    void remove_bodies();
+    void despawn();
+    StepFault keep_in_bounds();
+    void remove_outside(BodyRow row);
     void return_pod(Slot slot, BodyRow row);
 
     World::Impl& world_;
@@ -64,6 +66,17 @@ constexpr std::array kPhases{
     Phase{"events", &Step::events},
     Phase{"next_tick", &Step::next_tick},
 };
+
+/// To the opposite side; the broad phase then ends what it touched.
+void wrap(Real bounds, BodyMotion& motion) {
+    for (std::int64_t& coordinate : motion.position) {
+        if (coordinate > bounds.raw()) {
+            coordinate -= 2 * bounds.raw();
+        } else if (coordinate < -bounds.raw()) {
+            coordinate += 2 * bounds.raw();
+        }
+    }
+}
 
 constexpr std::array<std::string_view, kPhases.size()> names_of_phases() {
     std::array<std::string_view, kPhases.size()> names;
@@ -137,7 +150,10 @@ StepFault Step::sleep() {
 StepFault Step::spawns_despawns() {
     report_contacts();
     score_hits();
-    remove_bodies();
+    despawn();
+    if (const StepFault fault = keep_in_bounds(); fault != StepFault::none) {
+        return fault;
+    }
     Spawner& spawner = world_.spawner;
     const std::size_t returned = spawner.created().size();
     world_.pods.spawn_balls(tables_, world_.players(), world_.globals().seed, tick_, spawner);
@@ -190,7 +206,7 @@ void Step::destroy(BodyRow row) {
     }
 }
 
-void Step::remove_bodies() {
+void Step::despawn() {
     if (world_.spawner.is_despawn_due(tables_.properties, tick_low())) {
         for (BodyRow row = 0; row < tables_.motion.count(); ++row) {
             if (tables_.properties[row].despawn_tick == tick_low()) {
@@ -198,20 +214,39 @@ void Step::remove_bodies() {
             }
         }
     }
-    // Who sleeps has not left.
+}
+
+/// Who sleeps has not left.
+StepFault Step::keep_in_bounds() {
+    const Real bounds = world_.settings.bounds;
     for (const BodyRow row : world_.dynamics.awake_rows()) {
         const bool is_fixed =
             tables_.properties[row].mode == static_cast<std::uint8_t>(BodyMode::fixed);
         if (is_fixed || world_.spawner.is_destroyed(row) ||
-            !is_outside(tables_.motion[row], world_.settings.bounds)) {
+            !is_outside(tables_.motion[row], bounds)) {
             continue;
         }
-        const Slot slot = slot_of(world_.players(), id(row));
-        if (slot == kNoIndex) {
-            destroy(row);
-        } else {
-            return_pod(slot, row);
+        switch (world_.settings.bounds_policy) {
+        case BoundsPolicy::destroy:
+            remove_outside(row);
+            break;
+        case BoundsPolicy::wrap:
+            wrap(bounds, tables_.motion[row]);
+            break;
+        case BoundsPolicy::error:
+            world_.fault_body = id(row);
+            return StepFault::bounds_left;
         }
+    }
+    return StepFault::none;
+}
+
+void Step::remove_outside(BodyRow row) {
+    const Slot slot = slot_of(world_.players(), id(row));
+    if (slot == kNoIndex) {
+        destroy(row);
+    } else {
+        return_pod(slot, row);
     }
 }
 
@@ -262,6 +297,9 @@ Error World::Impl::fault_error() {
         return full("pair_capacity", capacities.pair_capacity);
     case StepFault::manifolds_full:
         return full("manifold_capacity", capacities.manifold_capacity);
+    case StepFault::bounds_left:
+        return Error{"step to tick " + std::to_string(tick + 1) + ": body " +
+                     std::to_string(fault_body) + " has left settings.bounds"};
     case StepFault::none:
         break;
     }

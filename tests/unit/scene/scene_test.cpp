@@ -104,6 +104,17 @@ TEST(Scene, CombineRulesComeFromMaterialsAndBodies) {
     EXPECT_EQ(scene.bodies[2].friction_rule, CombineRule::multiply);
 }
 
+TEST(Scene, SettingsOfSleepAndBoundsAreRead) {
+    const WorldDefinition scene =
+        parse("name: \"t\" settings { sleep_speed: 0.25 sleep_seconds: 2 bounds_policy: wrap }");
+    EXPECT_EQ(scene.settings.sleep_speed, Real(0.25));
+    EXPECT_EQ(scene.settings.sleep_seconds, Real(2));
+    EXPECT_EQ(scene.settings.bounds_policy, BoundsPolicy::wrap);
+    EXPECT_EQ(parse("name: \"t\"").settings.bounds_policy, BoundsPolicy::destroy);
+    EXPECT_NE(error_of("name: \"t\"\nsettings { sleep_seconds: -1 }").find("t.textproto:2:"),
+              std::string::npos);
+}
+
 TEST(Scene, LayersBecomeNumbersAndMasks) {
     const WorldDefinition scene =
         parse("name: \"t\" layer { name: \"debris\" ignores: \"debris\" ignores: \"player\" } "

@@ -205,6 +205,59 @@ TEST(WorldStep, DestroysBodiesThatLeaveTheBounds) {
     EXPECT_EQ(world->counts().destroyed_total, 1U);
 }
 
+TEST(WorldStep, WrapsBodiesThatLeaveTheBounds) {
+    WorldDefinition scene;
+    scene.settings.bounds = 10;
+    scene.settings.bounds_policy = BoundsPolicy::wrap;
+    scene.settings.gravity = {0, 0, 0};
+    scene.bodies.push_back(sphere(5, {9, 1, -9}, 0.5));
+    scene.bodies[0].linear_velocity = {3, 0, -6};
+    const WorldPtr world = make_world(scene);
+    step_idle(*world, 60);
+    const BodyView body = *world->body(5);
+    // 9 + 3 - 20 and -9 - 6 + 20
+    EXPECT_NEAR(to_double(body.position.x), -8, 1e-5);
+    EXPECT_NEAR(to_double(body.position.y), 1, 1e-5);
+    EXPECT_NEAR(to_double(body.position.z), 5, 1e-5);
+    EXPECT_NEAR(to_double(body.linear_velocity.x), 3, 1e-5);
+    EXPECT_EQ(world->counts().destroyed_total, 0U);
+    EXPECT_TRUE(world->check().ok());
+}
+
+TEST(WorldStep, WhatWrapsEndsItsContacts) {
+    WorldDefinition scene;
+    scene.settings.bounds = 10;
+    scene.settings.bounds_policy = BoundsPolicy::wrap;
+    scene.bodies.push_back(box(1, {9, -1, 0}, {4, 1, 4}));
+    scene.bodies[0].mode = BodyMode::fixed;
+    scene.bodies.push_back(box(2, {9.5, 0.5, 0}, {0.5, 0.5, 0.5}));
+    scene.bodies[1].linear_velocity.x = 5;
+    const WorldPtr world = make_world(scene);
+    bool ended = false;
+    for (int tick = 0; tick < 30; ++tick) {
+        step_idle(*world);
+        for (const Event& event : world->events()) {
+            ended = ended || event == Event{EventType::contact_end, 1, 2, 0};
+        }
+    }
+    EXPECT_TRUE(ended);
+    EXPECT_LT(to_double(world->body(2)->position.x), 0);
+    EXPECT_EQ(world->counts().contacts, 0U);
+}
+
+TEST(WorldStep, NamesABodyThatLeavesTheBoundsWhereThatIsAnError) {
+    WorldDefinition scene;
+    scene.settings.bounds = 10;
+    scene.settings.bounds_policy = BoundsPolicy::error;
+    scene.bodies.push_back(sphere(5, {0, -9, 0}, 0.5));
+    const WorldPtr world = make_world(scene);
+    step_idle(*world, 26);
+    const Status status = world->step({});
+    ASSERT_FALSE(status.ok());
+    EXPECT_EQ(status.error().message, "step to tick 27: body 5 has left settings.bounds");
+    EXPECT_FALSE(world->step({}).ok()); // final
+}
+
 /// A fault says which setting to raise, and stays until another state is loaded.
 void expect_fault(const WorldDefinition& scene, const char* setting) {
     const WorldPtr world = make_world(scene);
