@@ -8,6 +8,7 @@
 namespace lockwind {
 namespace {
 
+constexpr Range kSurfaceSpeed{-100, 100, "m/s"};
 constexpr Range kSize{0.01, 250, "m"};
 constexpr Range kMass{0.001, 1e6, "kg"};
 constexpr Range kDensity{0.01, 1e5, "kg/m^3"};
@@ -129,6 +130,7 @@ BodyDefinition BodyReader::read_common(const scene_text::Body& body,
     read_turn(body, reader, definition);
     read_shape(body, reader, definition);
     read_matter(body, reader, definition);
+    definition.surface_velocity = reader.vector("surface_velocity", {}, kSurfaceSpeed);
     definition.layer = layers_.read_layer(body.layer(), reader);
     definition.mask = layers_.read_mask(body.ignores(), reader);
     definition.sensor = body.sensor();

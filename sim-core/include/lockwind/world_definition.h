@@ -41,6 +41,7 @@ struct BodyDefinition {
     Real mass = 0.0;       // kg; overrides density where > 0
     Real friction = 0.5;   // Coulomb
     Real restitution = 0.0;
+    Vec3 surface_velocity; // m/s, in the body's frame: what its surface does to others, as a belt's
     CombineRule friction_rule = CombineRule::geometric_mean;
     CombineRule restitution_rule = CombineRule::maximum;
     std::uint32_t layer = 0;         // below kLayerCount

@@ -31,22 +31,24 @@ struct BodyProperties {
     std::int32_t bounding_radius; // Q9.22 m; 0 for a plane
     std::int32_t gyration_radius; // Q9.22 m: sqrt(k_min k_max); see solver.md 4
     std::int32_t inverse_gyration_radius; // Q7.24 1/m
-    std::int32_t inverse_inertia[3]; // Q5.26: mass x gyration_radius^2 / I, principal = local axes
-    std::int32_t friction;           // Q3.28
-    std::int32_t restitution;        // Q3.28
-    std::uint8_t mode;               // BodyMode
-    std::uint8_t shape;              // ShapeType
-    std::uint8_t can_sleep;          // 0, 1
-    std::uint8_t sensor;             // 0, 1
-    std::uint32_t mask;              // bit L: meets bodies of layer L
-    std::uint8_t layer;              // below kLayerCount
-    std::uint8_t friction_rule;      // CombineRule
-    std::uint8_t restitution_rule;   // CombineRule
+    std::int32_t inverse_inertia[3];  // Q5.26: mass x gyration_radius^2 / I, principal = local axes
+    std::int32_t friction;            // Q3.28
+    std::int32_t restitution;         // Q3.28
+    std::uint8_t mode;                // BodyMode
+    std::uint8_t shape;               // ShapeType
+    std::uint8_t can_sleep;           // 0, 1
+    std::uint8_t sensor;              // 0, 1
+    std::int32_t surface_velocity[3]; // Q11.20 m/s, in the body's frame
+    std::uint32_t mask;               // bit L: meets bodies of layer L
+    std::uint8_t layer;               // below kLayerCount
+    std::uint8_t friction_rule;       // CombineRule
+    std::uint8_t restitution_rule;    // CombineRule
     std::uint8_t zero;
     std::uint32_t spawn_count;  // bodies this one has spawned
     std::uint32_t despawn_tick; // low 32 bits of the tick that destroys it; 0 for never
+    std::uint32_t zero_end;     // int64 is aligned to 8 on some machines
 };
-static_assert(sizeof(BodyProperties) == 72);
+static_assert(sizeof(BodyProperties) == 88);
 
 /// Whether a body rests: row of "body_sleep", same row as its BodyMotion. Apart and narrow, so that
 /// a step sees at a glance who is awake.
@@ -82,6 +84,7 @@ inline constexpr std::array kBodyPropertiesFields{
     LOCKWIND_FIELD(BodyProperties, shape, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, can_sleep, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, sensor, 0, "", ""),
+    LOCKWIND_FIELD(BodyProperties, surface_velocity, 20, "m/s", "xyz"),
     LOCKWIND_FIELD(BodyProperties, mask, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, layer, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, friction_rule, 0, "", ""),
@@ -89,6 +92,7 @@ inline constexpr std::array kBodyPropertiesFields{
     LOCKWIND_FIELD(BodyProperties, zero, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, spawn_count, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, despawn_tick, 0, "tick", ""),
+    LOCKWIND_FIELD(BodyProperties, zero_end, 0, "", ""),
 };
 
 inline constexpr std::array kBodySleepFields{

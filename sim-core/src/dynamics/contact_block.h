@@ -78,6 +78,7 @@ struct alignas(64) ContactBlock {
     Point point[kBlockPoints];
 
     Row tangent_row[2];
+    Lanes<std::int32_t> surface_speed[2]; // of B's surface less A's along the tangents, Q11.20 m/s
     Lanes<std::int32_t> tangent_coupling; // between the two
     Lanes<std::int32_t> twist_lever_a;    // smaller gyration radius / that of A, negative
     Lanes<std::int32_t> twist_lever_b;

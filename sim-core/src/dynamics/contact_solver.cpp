@@ -2,6 +2,7 @@
 
 #include "dynamics/lanes.h"
 #include "dynamics/pairing.h"
+#include "geometry/rotation.h"
 
 #include "lockwind/integer.h"
 #include "lockwind/overflow.h"
@@ -48,6 +49,16 @@ std::int32_t radius_ratio(std::int32_t radius_min, std::int32_t radius) {
     return static_cast<std::int32_t>(std::min(ratio, std::int64_t{4} << kCoefficientFraction));
 }
 
+/// World, Q11.20 m/s. A sphere's frame does not turn with it: its surface velocity is the world's.
+void read_surface(const BodyFrame& frame, const BodyProperties& body, std::int32_t out[3]) {
+    const std::int32_t* local = body.surface_velocity;
+    if ((local[0] | local[1] | local[2]) == 0) {
+        std::fill_n(out, 3, 0);
+    } else {
+        rotate(frame.rotation, local, out);
+    }
+}
+
 /// What a contact's lane is made from.
 struct PairReader {
     const StepConstants& constants;
@@ -71,6 +82,13 @@ void PairReader::read(ContactBlock& block, int lane, PairTerms& terms) const {
     pair_delta(frames[row_a], frames[row_b], tables.motion[row_a], tables.motion[row_b], delta);
     for (int axis = 0; axis < 3; ++axis) {
         terms.centre_delta[axis][lane] = delta[axis];
+    }
+    std::int32_t surface_a[3];
+    std::int32_t surface_b[3];
+    read_surface(frames[row_a], a, surface_a);
+    read_surface(frames[row_b], b, surface_b);
+    for (int axis = 0; axis < 3; ++axis) {
+        terms.surface_velocity[axis][lane] = raw_subtract(surface_b[axis], surface_a[axis]);
     }
     const bool a_moves = a.mode == kDynamic;
     const bool b_moves = b.mode == kDynamic;
@@ -114,6 +132,7 @@ void fill_padding(BodyRow padding_row, ContactBlock& block, PairTerms& terms) {
         terms.body_b[lane] = &kNoBody;
         for (int axis = 0; axis < 3; ++axis) {
             terms.centre_delta[axis][lane] = 0;
+            terms.surface_velocity[axis][lane] = 0;
         }
         terms.inverse_radius_min[lane] = 0;
         terms.lever_max[lane] = 0;

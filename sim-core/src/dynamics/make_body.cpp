@@ -162,6 +162,7 @@ void check_definition(const BodyDefinition& definition,
         definition.friction_rule <= CombineRule::maximum, "friction_rule", "is unknown");
     checker.require(
         definition.restitution_rule <= CombineRule::maximum, "restitution_rule", "is unknown");
+    checker.vector_range("surface_velocity", definition.surface_velocity, kSurfaceSpeedMax, " m/s");
     checker.range("density", definition.density, 0, kDensityMax, " kg/m^3");
     checker.range("mass", definition.mass, 0, kBodyMassMax, " kg");
     checker.range("friction", definition.friction, 0, kFrictionMax, "");
@@ -348,6 +349,10 @@ Status make_body(const BodyDefinition& definition,
     new_properties.shape = static_cast<std::uint8_t>(definition.shape.type);
     new_properties.can_sleep = definition.can_sleep ? 1 : 0;
     new_properties.sensor = definition.sensor ? 1 : 0;
+    const Vec3& surface = definition.surface_velocity;
+    new_properties.surface_velocity[0] = convert<Velocity>(surface.x).raw();
+    new_properties.surface_velocity[1] = convert<Velocity>(surface.y).raw();
+    new_properties.surface_velocity[2] = convert<Velocity>(surface.z).raw();
     new_properties.layer = static_cast<std::uint8_t>(definition.layer);
     new_properties.mask = definition.mask & settings.layer_masks[definition.layer];
     new_properties.friction_rule = static_cast<std::uint8_t>(definition.friction_rule);

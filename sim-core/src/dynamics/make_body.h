@@ -13,6 +13,7 @@ inline constexpr Real kBodyPositionMax = 30000.0;  // m, each axis
 inline constexpr Real kBodyMassMin = 0.000001;     // kg: 1/m stays below 2^20
 inline constexpr Real kBodyMassMax = 1000000000.0; // kg: 1/m keeps three digits in Q24.40
 inline constexpr Real kBodySpeedMax = 2000.0;      // m/s; also of angular speed x gyration radius
+inline constexpr Real kSurfaceSpeedMax = 100.0;    // m/s, each axis
 inline constexpr Real kFrictionMax = 4.0;
 inline constexpr Real kRestitutionMax = 1.0;
 

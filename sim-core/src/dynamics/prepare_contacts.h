@@ -13,9 +13,10 @@ struct PairTerms {
     const Manifold* manifold[kBlockLanes];
     const BodyTerms* body_a[kBlockLanes];
     const BodyTerms* body_b[kBlockLanes];
-    std::int32_t centre_delta[3][kBlockLanes];    // Q9.22 m, now
-    std::int32_t inverse_radius_min[kBlockLanes]; // Q7.24 1/m: of the smaller gyration radius
-    std::int32_t lever_max[kBlockLanes];          // Q9.22 m: 7.5 of the smaller gyration radius
+    std::int32_t centre_delta[3][kBlockLanes];     // Q9.22 m, now
+    std::int32_t surface_velocity[3][kBlockLanes]; // Q11.20 m/s, world: B's less A's
+    std::int32_t inverse_radius_min[kBlockLanes];  // Q7.24 1/m: of the smaller gyration radius
+    std::int32_t lever_max[kBlockLanes];           // Q9.22 m: 7.5 of the smaller gyration radius
 };
 
 /// Fills the rows of a block from its contacts' manifolds and bodies: normal rows, their couplings,
@@ -343,6 +344,10 @@ void BlockPreparation<L>::make_levers() {
 template <class L>
 void BlockPreparation<L>::make_tangent_row(int which) {
     fill_row(jacobian_of(centre_a_, centre_b_, axes_[1 + which]), block_.tangent_row[which]);
+    const Vector surface[3] = {lane(terms_.surface_velocity[0]),
+                               lane(terms_.surface_velocity[1]),
+                               lane(terms_.surface_velocity[2])};
+    set_lane(block_.surface_speed[which], dot<kUnitFraction>(axes_[1 + which], surface));
 }
 
 template <class L>

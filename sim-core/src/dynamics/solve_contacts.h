@@ -329,10 +329,11 @@ private:
         }
         const Vector old_0 = lane(block_.friction_impulse[0]);
         const Vector old_1 = lane(block_.friction_impulse[1]);
-        const Vector lost_0 = scale(finish(sum[0]), factor(block_.tangent_row[0].mass));
+        const Vector speed_0 = L::add(finish(sum[0]), lane(block_.surface_speed[0]));
+        const Vector lost_0 = scale(speed_0, factor(block_.tangent_row[0].mass));
         // The first row's impulse changes the second one's speed.
-        const Vector speed_1 =
-            L::subtract(finish(sum[1]), scale(lost_0, factor(block_.tangent_coupling)));
+        const Vector speed_1 = L::subtract(L::add(finish(sum[1]), lane(block_.surface_speed[1])),
+                                           scale(lost_0, factor(block_.tangent_coupling)));
         Vector now_0 = L::subtract(old_0, lost_0);
         Vector now_1 = L::subtract(old_1, scale(speed_1, factor(block_.tangent_row[1].mass)));
         L::clamp_to_cone(now_0, now_1, limit);

@@ -166,7 +166,10 @@ const char* bad_properties_field(const BodyProperties& properties) {
     if (properties.friction_rule > kLastRule || properties.restitution_rule > kLastRule) {
         return "friction_rule or restitution_rule";
     }
-    if (properties.zero != 0) {
+    if (!all_within(properties.surface_velocity, convert<Velocity>(kSurfaceSpeedMax).raw())) {
+        return "surface_velocity";
+    }
+    if (properties.zero != 0 || properties.zero_end != 0) {
         return "zero";
     }
     return properties.spawn_count > kSpawnCountMax ? "spawn_count" : nullptr;

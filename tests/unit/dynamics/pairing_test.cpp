@@ -96,6 +96,36 @@ TEST(Pairing, ABoxSlidesByTheRule) {
     EXPECT_NEAR(distance(CombineRule::average), 9 / (2 * 0.5 * 9.81), 0.04);
 }
 
+/// A box on a belt, after 10 s; friction brings it to the belt's speed at mu g.
+TEST(SurfaceVelocity, ABeltCarriesWhatLiesOnIt) {
+    for (const double turn : {0.0, 1.0}) { // about y, rad
+        DynamicsBench bench;
+        BodyDefinition belt = fixed(box(50, 0.5, 50, vec(0, -0.5, 0)));
+        belt.orientation = {0, real(std::sin(turn / 2)), 0, real(std::cos(turn / 2))};
+        belt.surface_velocity = vec(2, 0, 0);
+        bench.add(belt);
+        const BodyRow row = bench.add(cube(0.5, vec(0, 0.5, 0)));
+        bench.run(600);
+        const double speed = std::hypot(bench.velocity(row, 0), bench.velocity(row, 2));
+        EXPECT_NEAR(speed, 2, 0.01);
+        EXPECT_NEAR(bench.velocity(row, 0), 2 * std::cos(turn), 0.01);
+        EXPECT_NEAR(bench.velocity(row, 2), -2 * std::sin(turn), 0.01);
+        // v t - v^2 / (2 mu g)
+        const double distance = std::hypot(bench.position(row, 0), bench.position(row, 2));
+        EXPECT_NEAR(distance, 2 * 10 - 4 / (2 * 0.5 * 9.81), 0.05);
+    }
+}
+
+TEST(SurfaceVelocity, ABodyWithARunningSurfaceDrivesItself) {
+    DynamicsBench bench;
+    bench.add(ground());
+    BodyDefinition crawler = box(1, 0.5, 1, vec(0, 0.5, 0));
+    crawler.surface_velocity = vec(1.5, 0, 0);
+    const BodyRow row = bench.add(crawler);
+    bench.run(300);
+    EXPECT_NEAR(bench.velocity(row, 0), -1.5, 0.02);
+}
+
 TEST(Pairing, MeetingNeedsADynamicBodyAndBothMasks) {
     BodyProperties a{};
     BodyProperties b{};

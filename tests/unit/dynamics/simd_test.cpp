@@ -112,6 +112,7 @@ void draw_block(ContactBlock& block, Dice& dice) {
     fill(block.twist_response_a, dice);
     fill(block.twist_response_b, dice);
     fill(block.friction_impulse, dice);
+    fill(block.surface_speed, dice);
     keep_promises(block, dice);
 }
 
@@ -193,6 +194,7 @@ struct PairDraw {
             body.inverse_gyration_radius() = between(dice, 0, 100 << kEffectiveMassFraction);
         }
         fill(terms.centre_delta, dice);
+        fill(terms.surface_velocity, dice);
         for (int lane = 0; lane < kBlockLanes; ++lane) {
             Manifold& manifold = manifolds[static_cast<std::size_t>(lane)];
             fill(manifold.normal, dice);
@@ -241,6 +243,8 @@ void expect_same_preparation(const ContactBlock& block, const ContactBlock& othe
     }
     ASSERT_NO_FATAL_FAILURE(expect_same(block.tangent_row[0], other.tangent_row[0], lane));
     ASSERT_NO_FATAL_FAILURE(expect_same(block.tangent_row[1], other.tangent_row[1], lane));
+    ASSERT_EQ(block.surface_speed[0][lane], other.surface_speed[0][lane]);
+    ASSERT_EQ(block.surface_speed[1][lane], other.surface_speed[1][lane]);
     ASSERT_EQ(block.tangent_coupling[lane], other.tangent_coupling[lane]);
     ASSERT_EQ(block.twist_mass[lane], other.twist_mass[lane]);
 }
