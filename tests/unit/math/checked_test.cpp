@@ -78,9 +78,10 @@ TEST(Checked, TrapsRoundingIntoANarrowerFormat) {
 
 TEST(Checked, TrapsRoundingUpPastTheLastValue) {
     using Finer = Wide<34>;
-    const auto below = Finer::from_raw(Int128(std::numeric_limits<std::int64_t>::max()) * 4 + 1);
+    const auto largest = wide_product<Int128>(std::numeric_limits<std::int64_t>::max(), 4);
+    const auto below = Finer::from_raw(raw_add(largest, Int128(1)));
     EXPECT_EQ(round_to<Real>(below), Real::highest());
-    const auto above = Finer::from_raw(Int128(std::numeric_limits<std::int64_t>::max()) * 4 + 2);
+    const auto above = Finer::from_raw(raw_add(largest, Int128(2)));
     EXPECT_DEATH((void)round_to<Real>(above), "fixed-point overflow: narrow");
 }
 
