@@ -72,7 +72,8 @@ TEST(Determinism, LoadingIntoAFreshWorldContinuesTheChain) {
             const WorldPtr fresh = make_world(busy_scene(60, 4));
             ASSERT_TRUE(fresh->load(bytes).ok());
             for (Tick next = world->tick(); next < world->tick() + 10 && next < kTicks; ++next) {
-                ASSERT_EQ(fresh->state_hash(), straight_chain()[next]) << next;
+                ASSERT_EQ(fresh->state_hash(), straight_chain()[static_cast<std::size_t>(next)])
+                    << next;
                 step_busy(*fresh);
             }
         }
@@ -111,7 +112,8 @@ TEST(Determinism, DroppingCachesChangesNoBit) {
             world->drop_derived();
         }
         step_busy(*world);
-        ASSERT_EQ(world->state_hash(), straight_chain()[world->tick()]) << tick;
+        ASSERT_EQ(world->state_hash(), straight_chain()[static_cast<std::size_t>(world->tick())])
+            << tick;
     }
 }
 
@@ -125,7 +127,7 @@ TEST(Determinism, ReadingChangesNoBit) {
             static_cast<void>(world->body_at(row));
         }
         step_busy(*world);
-        ASSERT_EQ(world->state_hash(), straight_chain()[world->tick()]);
+        ASSERT_EQ(world->state_hash(), straight_chain()[static_cast<std::size_t>(world->tick())]);
     }
 }
 

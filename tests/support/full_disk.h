@@ -13,7 +13,7 @@ public:
     explicit FullDisk(std::uint64_t size_bytes) {
         EXPECT_EQ(::getrlimit(RLIMIT_FSIZE, &before_), 0);
         handler_ = std::signal(SIGXFSZ, SIG_IGN);
-        const rlimit full{size_bytes, before_.rlim_max};
+        const rlimit full{static_cast<rlim_t>(size_bytes), before_.rlim_max};
         EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &full), 0);
     }
     FullDisk(const FullDisk&) = delete;

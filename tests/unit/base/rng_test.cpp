@@ -17,7 +17,7 @@ TEST(Rng, MixesLikePublishedSplitMix64) {
                                                       9817491932198370423U,
                                                       4593380528125082431U,
                                                       16408922859458223821U};
-    for (std::uint64_t step = 0; step < kPublished.size(); ++step) {
+    for (std::size_t step = 0; step < kPublished.size(); ++step) {
         EXPECT_EQ(split_mix(1234567U + (step + 1) * kSplitMixGamma), kPublished[step]);
     }
 }

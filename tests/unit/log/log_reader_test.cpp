@@ -189,7 +189,8 @@ TEST_F(LogReaderTest, ReadsWhatLiesBeyondFourGiB) {
     Result<LogReader> reader = LogReader::open(path("match.log"));
     ASSERT_TRUE(reader.ok());
     const LogIndex index = index_log(reader.value());
-    const std::string records = read_file(path("match.log")).substr(reader.value().offset());
+    const std::string records =
+        read_file(path("match.log")).substr(static_cast<std::size_t>(reader.value().offset()));
     constexpr std::uint64_t kFar = std::uint64_t{5} << 30U;
     std::filesystem::resize_file(path("match.log"), kFar); // a hole: takes no room
     std::ofstream(path("match.log"), std::ios::binary | std::ios::app) << records;

@@ -147,7 +147,7 @@ TEST(LockstepReconnect, SurvivesManyDropsUnderLoss) {
         match.add_clients(3);
         Dice dice(seed);
         while (match.server.session.confirmed_tick() < 1100) {
-            const PeerId victim = match.clients[dice.below(3)]->peer;
+            const PeerId victim = match.clients[static_cast<std::size_t>(dice.below(3))]->peer;
             ASSERT_TRUE(
                 match.run_to_tick(match.server.session.confirmed_tick() + 50 + dice.below(100)));
             match.network.cut.insert(victim);

@@ -73,8 +73,8 @@ TEST(StateHistory, SavesWhatTheSimulationLoads) {
     for (const Tick tick : {2U, 0U, 1U}) {
         ASSERT_TRUE(simulation.load(history.find(tick)->bytes).ok());
         EXPECT_EQ(simulation.tick(), tick);
-        EXPECT_EQ(simulation.state_hash(), hashes[tick]);
-        EXPECT_EQ(history.find(tick)->hash, hashes[tick]);
+        EXPECT_EQ(simulation.state_hash(), hashes[static_cast<std::size_t>(tick)]);
+        EXPECT_EQ(history.find(tick)->hash, hashes[static_cast<std::size_t>(tick)]);
     }
 }
 

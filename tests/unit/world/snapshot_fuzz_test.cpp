@@ -79,7 +79,7 @@ TEST(SnapshotFuzz, EveryMutationIsRefusedOrCanBeStepped) {
     int stepped = 0;
     constexpr std::uint64_t kMutations = 2000;
     for (std::uint64_t seed = 0; seed < kMutations; ++seed) {
-        std::vector<std::byte> bytes = sound[seed % sound.size()];
+        std::vector<std::byte> bytes = sound[static_cast<std::size_t>(seed % sound.size())];
         Mutator(bytes, seed).run();
         const std::uint64_t before = world->state_hash();
         const Status loaded = world->load(bytes);
