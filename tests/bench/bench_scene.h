@@ -24,6 +24,9 @@ inline constexpr std::array kBenchScenes{
     BenchScene{"arena", 600, 4},
 };
 
+/// All scenes have landed by then.
+inline constexpr std::uint32_t kWarmUpSteps = 120;
+
 /// Prints the message and ends the program with exit code 2.
 [[noreturn]] void give_up(const std::string& message);
 
@@ -31,7 +34,9 @@ inline constexpr std::array kBenchScenes{
 WorldDefinition load_bench_scene(const BenchScene& scene);
 
 void register_step_benchmarks();
+void register_phase_benchmarks();
 void register_state_benchmarks();
+void register_rollback_benchmarks();
 void register_growth_benchmarks();
 
 } // namespace lockwind::bench

@@ -10,7 +10,6 @@ namespace lockwind::bench {
 namespace {
 
 constexpr std::uint32_t kSide = 250; // bodies in a row
-constexpr std::uint32_t kSettleSteps = 120;
 
 BodyDefinition unit_box(BodyId id, const Vec3& position) {
     BodyDefinition body;
@@ -59,9 +58,7 @@ WorldDefinition resting_scene(std::uint32_t count, bool sleeps) {
 
 void step_scene(benchmark::State& state, const WorldDefinition& scene) {
     MeasuredWorld world(scene);
-    for (std::uint32_t step = 0; step < kSettleSteps; ++step) {
-        world.step();
-    }
+    world.run(kWarmUpSteps);
     for (auto iteration : state) {
         static_cast<void>(iteration);
         world.step();
@@ -85,11 +82,15 @@ void register_growth(const std::string& name, WorldDefinition (*make)(std::uint3
 void register_growth_benchmarks() {
     for (const int count : {1'000, 10'000, 50'000}) {
         register_growth("separate", &separate_scene, count);
+        register_growth(
+            "resting_awake",
+            [](std::uint32_t bodies) { return resting_scene(bodies, false); },
+            count);
+        register_growth(
+            "resting_asleep",
+            [](std::uint32_t bodies) { return resting_scene(bodies, true); },
+            count);
     }
-    register_growth(
-        "resting_awake", [](std::uint32_t count) { return resting_scene(count, false); }, 50'000);
-    register_growth(
-        "resting_asleep", [](std::uint32_t count) { return resting_scene(count, true); }, 50'000);
 }
 
 } // namespace lockwind::bench

@@ -69,7 +69,9 @@ int main(int argc, char** argv) {
     benchmark::AddCustomContext("sim_version", std::string(lockwind::sim_version()));
     benchmark::AddCustomContext("build_info", std::string(lockwind::build_info()));
     lockwind::bench::register_step_benchmarks();
+    lockwind::bench::register_phase_benchmarks();
     lockwind::bench::register_state_benchmarks();
+    lockwind::bench::register_rollback_benchmarks();
     lockwind::bench::register_growth_benchmarks();
     const bool to_file = lockwind::bench::writes_file(argc, argv);
     benchmark::Initialize(&argc, argv);

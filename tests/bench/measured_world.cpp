@@ -82,6 +82,12 @@ void MeasuredWorld::step() {
     }
 }
 
+void MeasuredWorld::run(std::uint32_t steps) {
+    for (std::uint32_t step = 0; step < steps; ++step) {
+        this->step();
+    }
+}
+
 std::uint32_t MeasuredWorld::contact_count() const {
     return simulation_->world().counts().contacts;
 }

@@ -17,6 +17,7 @@ public:
     explicit MeasuredWorld(const WorldDefinition& definition, Simd simd = best_simd());
 
     void step();
+    void run(std::uint32_t steps);
     WorldSimulation& simulation() { return *simulation_; }
     /// Why a step failed; "" if none did.
     const std::string& error() const { return error_; }

@@ -1,46 +1,39 @@
 #include "bench_scene.h"
 #include "bullet_world.h"
-#include "dynamics/contact.h"
 #include "measured_world.h"
-
-#include "lockwind/world.h"
+#include "step_times.h"
 
 #include <benchmark/benchmark.h>
-#include <chrono>
-#include <cstdio>
 #include <string>
 
 namespace lockwind::bench {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) {
-    return std::chrono::duration<double>(Clock::now() - begin).count();
+/// All of the scene's steps; the iteration's time is their mean.
+template <class World>
+void run_steps(benchmark::State& state, const BenchScene& scene, World& world) {
+    StepTimes times(scene.steps);
+    for (std::uint32_t step = 0; step < scene.steps; ++step) {
+        times.measure([&world] { world.step(); });
+    }
+    state.SetIterationTime(times.mean_seconds());
+    state.counters["p50_us"] = times.percentile_us(50);
+    state.counters["p99_us"] = times.percentile_us(99);
+    state.counters["awake"] = world.awake_count();
+    state.counters["contacts"] = world.contact_count();
+    state.counters["penetration_mm"] = world.penetration_mm();
 }
 
-void set_counters(benchmark::State& state, double awake, double contacts, double penetration_mm) {
-    state.counters["awake"] = awake;
-    state.counters["contacts"] = contacts;
-    state.counters["penetration_mm"] = penetration_mm;
-}
-
-/// One iteration: an untimed reset, then all steps; its time is their mean.
 void step_lockwind(benchmark::State& state, const BenchScene& scene, Simd simd) {
     const WorldDefinition definition = load_bench_scene(scene);
     for (auto iteration : state) {
         static_cast<void>(iteration);
         MeasuredWorld world(definition, simd);
-        const auto begin = Clock::now();
-        for (std::uint32_t step = 0; step < scene.steps; ++step) {
-            world.step();
-        }
-        state.SetIterationTime(seconds_since(begin) / scene.steps);
+        run_steps(state, scene, world);
         if (!world.error().empty()) {
             state.SkipWithError(world.error().c_str());
             return;
         }
-        set_counters(state, world.awake_count(), world.contact_count(), world.penetration_mm());
         state.SetLabel("state_hash=" + world.hash_text());
     }
 }
@@ -50,12 +43,7 @@ void step_bullet(benchmark::State& state, const BenchScene& scene) {
     for (auto iteration : state) {
         static_cast<void>(iteration);
         BulletWorld world(definition);
-        const auto begin = Clock::now();
-        for (std::uint32_t step = 0; step < scene.steps; ++step) {
-            world.step();
-        }
-        state.SetIterationTime(seconds_since(begin) / scene.steps);
-        set_counters(state, world.awake_count(), world.contact_count(), world.penetration_mm());
+        run_steps(state, scene, world);
     }
 }
 
