@@ -1,0 +1,1 @@
+"""What tests/bench/report is made of."""
