@@ -39,6 +39,8 @@ public:
         : reporter_(std::move(reporter)) {}
 
     bool ReportContext(const Context& context) override {
+        reporter_->SetOutputStream(&GetOutputStream()); // the library gave it to this one only
+        reporter_->SetErrorStream(&GetErrorStream());
         return reporter_->ReportContext(context);
     }
     void ReportRuns(const std::vector<Run>& runs) override {

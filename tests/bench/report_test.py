@@ -45,10 +45,10 @@ class Figures(unittest.TestCase):
     """Of invented measurements, whose results are known."""
 
     def test_compares_what_ran_in_the_same_pass(self):
-        # The machine was ten times slower in the second pass, and the third has no Bullet.
-        runs = results.Runs([{"step/a/lockwind": row(10), "step/a/bullet": row(40)},
-                             {"step/a/lockwind": row(200), "step/a/bullet": row(400)},
-                             {"step/a/lockwind": row(30)}])
+        # The first pass has no Bullet, and in the third the machine was ten times slower.
+        runs = results.Runs([{"step/a/lockwind": row(30)},
+                             {"step/a/lockwind": row(10), "step/a/bullet": row(40)},
+                             {"step/a/lockwind": row(200), "step/a/bullet": row(400)}])
         self.assertEqual(runs.ratios("step/a/lockwind", "step/a/bullet"), [0.25, 0.5])
         self.assertAlmostEqual(runs.median_us("step/a/lockwind"), 30)
 
