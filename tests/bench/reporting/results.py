@@ -86,6 +86,7 @@ def phases(runs):
     for name, scene in runs.matching(r"phases/(\w+)"):
         counters = [key for key in runs.rows(name)[0] if key.endswith("_us")]
         times = {key.removesuffix("_us"): runs.median(name, key) for key in counters}
+        times = dict(sorted(times.items(), key=lambda phase: -phase[1]))
         total = sum(times.values())
         result[scene] = {"step_us": total, "shares": {phase: us / total for phase, us in times.items()}}
     return result
