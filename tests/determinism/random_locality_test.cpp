@@ -214,7 +214,7 @@ void compare(std::uint64_t seed, Happened& happened) {
     for (Tick tick = 1; tick <= kTicks; ++tick) {
         const std::vector<SlotInput> inputs = busy_inputs(tick, 2, seed);
         Shared shared;
-        for (int group = 0; group < 2; ++group) {
+        for (std::size_t group = 0; group < 2; ++group) {
             play_script(*part[group], groups[group], tick);
             play_script(*whole, groups[group], tick);
             ASSERT_TRUE(part[group]->step({&inputs[1 - group], 1}).ok());

@@ -210,9 +210,10 @@ template <class L>
 void BlockPreparation<L>::make_separation(std::uint32_t point,
                                           std::int32_t rate,
                                           std::int32_t separation_max) {
+    const Vector* anchor_a = anchor_a_ + 3 * point;
     LOCKWIND_UNROLL
     for (int axis = 0; axis < 3; ++axis) {
-        arm_a_[point][axis] = anchor_a_[3 * point + axis];
+        arm_a_[point][axis] = anchor_a[axis];
         // 0 in the lanes that do not have this point, so that all its arms are 0.
         arm_b_[point][axis] =
             L::subtract(arm_a_[point][axis], of_point(point, delta_when_made_[axis]));

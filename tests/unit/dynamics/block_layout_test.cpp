@@ -147,7 +147,8 @@ TEST(BlockLayout, HoldsEveryContactOnceByColourPointsAndPair) {
             EXPECT_EQ(colour, colour_of.at(block.pair[0])) << "a block has one colour";
             EXPECT_EQ(index >= layout.overflow_first(), colour == kColours);
             EXPECT_LE(block.point_count[lane], block.point_count_max);
-            order.push_back({colour, kBlockPoints - block.point_count[lane], block.pair[lane]});
+            const auto points = static_cast<std::uint32_t>(block.point_count[lane]);
+            order.push_back({colour, kBlockPoints - points, block.pair[lane]});
         }
         ++index;
     }
