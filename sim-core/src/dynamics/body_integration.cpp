@@ -25,16 +25,20 @@ std::int64_t length_bound(const std::int64_t v[3]) {
     return largest + ((size[0] + size[1] + size[2] - largest) >> 1);
 }
 
-/// The turn of a tick, Q.30 rad, from the angular travel.
+/// The turn of a tick, Q.30 rad, each within +-4, from the angular travel.
 void turn_of(const StepConstants& constants,
              const std::int64_t travel[3],
              const BodyProperties& body,
              std::int64_t turn[3]) {
+    constexpr std::int64_t kTurnMax = std::int64_t{4} << 30;
     const std::int64_t farthest = std::int64_t{body.gyration_radius} << 12; // 4 rad in Q.32 m
     for (int axis = 0; axis < 3; ++axis) {
         const std::int64_t arc =
             std::clamp(divide(travel[axis], constants.per_substep_rate, 12), -farthest, farthest);
-        turn[axis] = raw_multiply(arc, std::int64_t{body.inverse_gyration_radius}) >> 26;
+        const std::int64_t angle =
+            raw_multiply(arc, std::int64_t{body.inverse_gyration_radius}) >> 26;
+        // Again, because the radius and its inverse of damaged rows may disagree.
+        turn[axis] = std::clamp(angle, -kTurnMax, kTurnMax);
     }
 }
 
