@@ -170,6 +170,18 @@ class Format(SourceGate):
         self.expect_caught("planted.cpp:1", *self.check())
 
 
+class Setup(unittest.TestCase):
+    """The one script that no other test runs: on a machine that has all it does nothing."""
+
+    def test_lists_every_package_with_its_reason(self):
+        done = subprocess.run([SCRIPTS / "setup", "--list"], capture_output=True, text=True, check=True)
+        self.assertEqual(done.stderr, "")
+        lines = done.stdout.splitlines()
+        self.assertGreater(len(lines), 20)
+        for line in lines:
+            self.assertRegex(line, r"^[a-z0-9][a-z0-9.+-]* *\| \S.*$")
+
+
 class Symbols(Gate):
     gate = SCRIPTS / "check_symbols"
 
