@@ -34,8 +34,8 @@ std::string phase_names() {
     return names;
 }
 
-/// Row to corrupt: the first dynamic body's in the sections of bodies, else the first. Nothing
-/// where the section has no row.
+/// Row to corrupt: the first dynamic body's that is awake in the sections of bodies (who sleeps has
+/// no velocity that could be another one), else the first. Nothing where the section has no row.
 std::optional<std::uint32_t> row_to_corrupt(const World& world, std::uint32_t section) {
     if (world.row_count(section) == 0) {
         return std::nullopt;
@@ -43,7 +43,8 @@ std::optional<std::uint32_t> row_to_corrupt(const World& world, std::uint32_t se
     if (section == section::kBody || section == section::kBodyProperties ||
         section == section::kBodySleep) {
         for (BodyRow row = 0; row < world.body_count(); ++row) {
-            if (world.body_at(row).mode == BodyMode::dynamic) {
+            const BodyView body = world.body_at(row);
+            if (body.mode == BodyMode::dynamic && !body.asleep) {
                 return row;
             }
         }

@@ -164,6 +164,23 @@ TEST(WorldSimulation, APhaseFaultComesBackInEverySimulationOfTheTick) {
     EXPECT_NE(simulation->state_hash(), hash);
 }
 
+TEST(WorldSimulation, CorruptsABodyThatIsAwakeWhereOthersSleep) {
+    WorldDefinition scene;
+    scene.bodies.push_back(ground(1));
+    scene.bodies.push_back(box(2, {0, 0.5, 0}, {0.5, 0.5, 0.5}));
+    scene.bodies.push_back(box(3, {5, 0.5, 0}, {0.5, 0.5, 0.5}));
+    scene.bodies[2].can_sleep = false;
+    const auto simulation = WorldSimulation::create(scene).value();
+    for (int tick = 0; tick < 120; ++tick) {
+        ASSERT_TRUE(simulation->advance({}).ok());
+    }
+    ASSERT_TRUE(simulation->world().body(2)->asleep);
+    const std::uint64_t hash = simulation->state_hash();
+    EXPECT_TRUE(simulation->corrupt_field("").ok());
+    EXPECT_NE(simulation->state_hash(), hash);
+    EXPECT_TRUE(simulation->world().check().ok());
+}
+
 TEST(WorldSimulation, NamesThePhasesThereAre) {
     const auto simulation = make_simulation();
     const Status status = simulation->set_phase_fault("collide");
