@@ -62,17 +62,6 @@ bool is_pile_asleep(const World& world, int pile) {
     return true;
 }
 
-/// Steps until nobody is awake, at most so long; how many ticks that took, or 0.
-int sleep_ticks(World& world, int most) {
-    for (int tick = 1; tick <= most; ++tick) {
-        step_idle(world);
-        if (world.counts().awake == 0) {
-            return tick;
-        }
-    }
-    return 0;
-}
-
 /// A feather: 1 g, let fall from just above the highest body of a pile, so that it comes at less
 /// than 1 m/s.
 BodyDefinition feather(const World& world, BodyId id, int pile) {
@@ -89,7 +78,7 @@ BodyDefinition feather(const World& world, BodyId id, int pile) {
 
 TEST(Resting, APileThatALightTouchWakesDoesNotJump) {
     const WorldPtr world = make_world(piles(1));
-    const int ticks = sleep_ticks(*world, 1200);
+    const int ticks = ticks_till_asleep(*world, 1200);
     ASSERT_GT(ticks, 0);
     const std::vector<Vector> before = places_of(*world);
     const double potential = energy(*world);
@@ -117,7 +106,7 @@ TEST(Resting, APileThatALightTouchWakesDoesNotJump) {
 TEST(Resting, TwelvePilesSleepAndWakeEachForItself) {
     constexpr int kPiles = 12;
     const WorldPtr world = make_world(piles(kPiles));
-    const int ticks = sleep_ticks(*world, 1800);
+    const int ticks = ticks_till_asleep(*world, 1800);
     ASSERT_GT(ticks, 0);
     std::cout << "all asleep after " << ticks << " ticks\n";
     for (const int touched : {3, 0, 11, 7}) {
@@ -146,7 +135,7 @@ TEST(Resting, TwelvePilesSleepAndWakeEachForItself) {
                         std::memcmp(&before[row], &after[row], sizeof(BodyMotion)) == 0)
                 << "body " << before[row].id << " of a sleeping pile changed";
         }
-        ASSERT_GT(sleep_ticks(*world, 1800), 0);
+        ASSERT_GT(ticks_till_asleep(*world, 1800), 0);
     }
 }
 

@@ -158,6 +158,17 @@ inline void step_idle(World& world, int ticks = 1) {
     }
 }
 
+/// Steps until nobody is awake; how many ticks that took, 0 where it took longer than `most`.
+inline int ticks_till_asleep(World& world, int most) {
+    for (int tick = 1; tick <= most; ++tick) {
+        step_idle(world);
+        if (world.counts().awake == 0) {
+            return tick;
+        }
+    }
+    return 0;
+}
+
 /// For messages and tolerances of tests only.
 inline double to_double(Real value) {
     return static_cast<double>(value.raw()) / 4294967296.0;

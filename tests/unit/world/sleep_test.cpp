@@ -37,17 +37,6 @@ WorldDefinition stack_scene(int boxes) {
     return scene;
 }
 
-/// Steps until nobody is awake; how many ticks that took, 0 where it took longer than `most`.
-int ticks_till_asleep(World& world, int most) {
-    for (int tick = 1; tick <= most; ++tick) {
-        step_idle(world);
-        if (world.counts().awake == 0) {
-            return tick;
-        }
-    }
-    return 0;
-}
-
 std::vector<std::byte> bytes_of(World& world, std::uint32_t section) {
     const auto bytes = world.section_bytes(section);
     return {bytes.begin(), bytes.end()};
