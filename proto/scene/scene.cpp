@@ -3,6 +3,7 @@
 #include "scene.pb.h"
 #include "scene/body_reader.h"
 #include "scene/field_reader.h"
+#include "scene/joint_reader.h"
 #include "scene/layer_reader.h"
 #include "scene/settings_reader.h"
 #include "scene/text_parser.h"
@@ -46,8 +47,14 @@ read_scene(std::string_view text, std::string_view file_name, const SceneOptions
     const LayerReader layers(scene, reader);
     world.settings.layer_masks = layers.masks();
     BodyReader bodies(scene, reader, layers, world);
+    JointReader joints(scene, reader, world);
     for (int index = 0; index < scene.body_size() && !errors.any(); ++index) {
+        const std::size_t first = world.bodies.size();
         bodies.read_body(index);
+        joints.note_body(index, first, world.bodies.size() - first);
+    }
+    for (int index = 0; index < scene.joint_size() && !errors.any(); ++index) {
+        joints.read_joint(index);
     }
     if (!errors.any()) {
         bodies.read_pods(options.players);

@@ -27,6 +27,7 @@ WorldSettings read_settings(const scene_text::Scene& scene,
     settings.body_capacity = reader.count("body_capacity", 0, kCapacity);
     settings.pair_capacity = reader.count("pair_capacity", 0, kCapacity);
     settings.manifold_capacity = reader.count("manifold_capacity", 0, kCapacity);
+    settings.joint_capacity = reader.count("joint_capacity", 0, kCapacity);
     settings.seed = options.seed;
     if (options.tick_rate_hz != 0) {
         settings.tick_rate_hz = options.tick_rate_hz;

@@ -35,6 +35,7 @@ const std::vector<GoldenRun>& golden_runs() {
         {"pyramid_210", 0, {0, 60, 120}},
         {"spheres_1000", 0, {0, 30, 60}},
         {"heap_1000", 0, {0, 30, 60}},
+        {"joints", 0, {0, 60, 300}},
     };
     return runs;
 }

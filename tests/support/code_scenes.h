@@ -105,6 +105,59 @@ inline WorldDefinition busy_scene(std::uint32_t count, std::uint32_t pods, std::
     return definition;
 }
 
+/// One joint of each kind between a fixed post and a body of its own, in motion; ids of bodies and
+/// joints from `first` on.
+inline void add_joints(WorldDefinition& definition, BodyId first, const Vec3& place) {
+    constexpr std::uint32_t kKinds = static_cast<std::uint32_t>(JointKind::grab) + 1;
+    BodyDefinition post = box(first, place, {4, 0.1, 0.1});
+    post.mode = BodyMode::fixed;
+    definition.bodies.push_back(post);
+    for (std::uint32_t index = 0; index < kKinds; ++index) {
+        const Real x = Real(index) - Real(3.5);
+        BodyDefinition body = box(first + 1 + index, place + Vec3{x, -1, 0.3}, {0.2, 0.3, 0.15});
+        body.linear_velocity = {0.5, 0, 1};
+        body.angular_velocity = {1, 2, -1};
+        definition.bodies.push_back(body);
+        JointDefinition joint;
+        joint.id = first + index;
+        joint.kind = static_cast<JointKind>(index);
+        joint.body_a = joint.kind == JointKind::grab ? 0 : first;
+        joint.body_b = body.id;
+        joint.anchor_a = {x, -0.5, 0.3};
+        joint.anchor_b = {0, 0.5, 0};
+        joint.frame_a = {0, 0, 0.6, 0.8};
+        joint.frame_b = joint.frame_a;
+        joint.target = place + Vec3{x, -0.5, 0.5};
+        const bool has_axis = joint.kind == JointKind::hinge || joint.kind == JointKind::slider ||
+                              joint.kind == JointKind::wheel;
+        joint.has_limit =
+            has_axis || joint.kind == JointKind::distance || joint.kind == JointKind::cone_twist;
+        joint.length_min = joint.kind == JointKind::distance ? Real(0) : Real(-0.2);
+        joint.length_max = 0.2;
+        joint.angle_min = -0.2;
+        joint.angle_max = 0.4;
+        joint.swing_max = 0.5;
+        joint.has_motor = has_axis;
+        joint.motor_speed = 2;
+        joint.motor_max = 30;
+        joint.has_spring = has_axis || joint.kind == JointKind::distance ||
+                           joint.kind == JointKind::fixed || joint.kind == JointKind::grab;
+        joint.spring_hertz = 3;
+        joint.spring_damping = 0.2;
+        joint.rest_length = 0.1;
+        joint.rest_angle = 0.1;
+        joint.break_force = 100000;
+        definition.joints.push_back(joint);
+    }
+}
+
+/// busy_scene with a joint of each kind above it.
+inline WorldDefinition scene_with_joints(std::uint32_t count, std::uint32_t pods) {
+    WorldDefinition definition = busy_scene(count, pods);
+    add_joints(definition, 10000, {0, 30, 0});
+    return definition;
+}
+
 /// Inputs of one tick: each player drives, turns, jumps and shoots by draws that change every 15
 /// ticks.
 inline std::vector<SlotInput> busy_inputs(Tick tick, std::uint32_t slots, std::uint64_t seed = 1) {

@@ -18,6 +18,7 @@ enum class EventType : std::uint8_t {
     woke = 8,          // a: the body, b: 0
     sensor_begin = 9,  // a < b, one of them a sensor; value 0
     sensor_end = 10,   // a < b; value 0
+    joint_break = 11,  // a, b: the joint's bodies, a is 0 of a grab; value: the joint's id
 };
 
 /// Something that happened in a tick. A tick's events are ordered by (type, a, b, value).

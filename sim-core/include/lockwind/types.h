@@ -16,6 +16,9 @@ using Slot = std::uint32_t;
 /// half.
 using BodyId = std::uint64_t;
 
+/// A joint's identity, never reused.
+using JointId = std::uint64_t;
+
 /// Place of a body in the id-sorted table: its rank. Not an identity: it moves when others come and
 /// go.
 using BodyRow = std::uint32_t;

@@ -33,6 +33,15 @@ struct BodyView {
     bool asleep;           // fixed bodies are, and kinematic ones that do not move
 };
 
+struct JointView {
+    JointId id;
+    JointKind kind;
+    BodyId body_a; // 0 of a grab
+    BodyId body_b;
+    Real motor_speed; // m/s or rad/s
+    Vec3 target;      // m, of a grab
+};
+
 struct RayHit {
     BodyId body;
     Real fraction; // of the ray, 0 .. 1
@@ -47,6 +56,7 @@ struct WorldCounts {
     std::uint32_t pairs;    // overlapping fat bounds
     std::uint32_t contacts; // contact points in touching manifolds
     std::uint32_t manifolds;
+    std::uint32_t joints;
     std::uint64_t events_total;    // since state(0)
     std::uint64_t created_total;   // bodies created in ticks since state(0)
     std::uint64_t destroyed_total; // bodies destroyed in ticks since state(0)
@@ -91,7 +101,16 @@ public:
     bool apply_torque(BodyId id, const Vec3& torque);                      // N m over the next tick
     /// An id that was ever used must not come back: only living bodies and pods are checked.
     Status create_body(const BodyDefinition& definition);
-    bool destroy_body(BodyId id);
+    bool destroy_body(BodyId id); // and its joints
+
+    /// Between steps, as the calls above. An id that was ever used must not come back.
+    Status create_joint(const JointDefinition& definition);
+    bool destroy_joint(JointId id);
+    std::optional<JointView> joint(JointId id) const;
+    /// Where a grab draws its anchor, m; held to 30 km. False where there is no such grab.
+    bool set_joint_target(JointId id, const Vec3& target);
+    /// m/s or rad/s, held to 1000. False where there is no such joint with a motor.
+    bool set_joint_motor(JointId id, Real speed);
 
     /// First hit on the segment from + t * (to - from); ties go to the lower id.
     std::optional<RayHit> ray_cast(const Vec3& from, const Vec3& to) const;

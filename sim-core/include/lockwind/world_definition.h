@@ -50,6 +50,55 @@ struct BodyDefinition {
     bool can_sleep = true;           // false keeps what it touches awake too
 };
 
+enum class JointKind : std::uint8_t {
+    ball = 0,       // one point in common
+    distance = 1,   // anchors between two distances apart, or on a spring, or a rod
+    hinge = 2,      // one axis in common; limit, motor, spring about it
+    slider = 3,     // no turn; limit, motor, spring along the axis
+    fixed = 4,      // no motion; a spring makes it soft
+    wheel = 5,      // suspension along the axis, spin about a second one with a motor
+    cone_twist = 6, // a ball whose axes stay within a cone, and within a twist about them
+    grab = 7,       // a spring from a place in the world: the mouse, a gravity gun
+};
+
+/// What a kind has no use for is left as it is here.
+struct JointDefinition {
+    JointId id = 0; // 1 .. 2^32 - 1, unique among joints
+    JointKind kind = JointKind::ball;
+    BodyId body_a = 0; // 0 for a grab, which has one body only
+    BodyId body_b = 0;
+    /// In each body's frame, m; a distance is measured between them, all others bring them
+    /// together.
+    Vec3 anchor_a;
+    Vec3 anchor_b;
+    /// The joint's frame in each body's: x is the axis of hinge, slider, suspension and cone; a
+    /// wheel spins about z. The turn from A's to B's is what limits and springs measure.
+    RealQuat frame_a;
+    RealQuat frame_b;
+    bool collide_connected = false; // whether the two bodies collide with each other
+
+    bool has_limit = false;
+    Real length_min = 0; // m: distance; travel of slider and wheel
+    Real length_max = 0;
+    Real angle_min = 0; // rad, -pi .. pi: hinge; twist of a cone_twist
+    Real angle_max = 0;
+    Real swing_max = 0; // rad, 0 .. pi: half the cone's opening
+
+    bool has_motor = false;
+    Real motor_speed = 0; // m/s of a slider, rad/s of hinge and wheel
+    Real motor_max = 0;   // N of slider and grab, N m of hinge and wheel
+
+    bool has_spring = false; // a grab always has one
+    Real spring_hertz = 5;   // of the two bodies against each other while the joint holds
+    Real spring_damping = 1; // damping ratio: 1 is critical
+    Real rest_length = 0;    // m, where the spring is slack
+    Real rest_angle = 0;     // rad
+
+    Real break_force = 0;  // N, mean of a tick; 0 for never
+    Real break_torque = 0; // N m
+    Vec3 target;           // m: where a grab draws its anchor
+};
+
 /// A player-controlled body: thrust along its +z, turn about y, jump, shoot a ball.
 struct PodDefinition {
     BodyId body = 0; // a dynamic body of the definition; pods are seated in slot order
@@ -94,12 +143,14 @@ struct WorldSettings {
     std::uint32_t body_capacity = 0;
     std::uint32_t pair_capacity = 0;
     std::uint32_t manifold_capacity = 0;
+    std::uint32_t joint_capacity = 0;
 };
 
 struct WorldDefinition {
     std::string name;
     WorldSettings settings;
     std::vector<BodyDefinition> bodies;
+    std::vector<JointDefinition> joints;
     std::vector<PodDefinition> pods; // slot s controls pods[s]
 };
 

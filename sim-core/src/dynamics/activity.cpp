@@ -4,17 +4,18 @@
 
 namespace lockwind {
 
-Activity::Activity(std::uint32_t body_capacity, std::uint32_t pair_capacity)
-    : part_(body_capacity) {
-    rows_.reserve(body_capacity);
-    partners_.reserve(body_capacity);
-    pairs_.reserve(pair_capacity);
+Activity::Activity(const DynamicsSettings& capacities) : part_(capacities.body_capacity) {
+    rows_.reserve(capacities.body_capacity);
+    partners_.reserve(capacities.body_capacity);
+    pairs_.reserve(capacities.pair_capacity);
+    joints_.reserve(capacities.joint_capacity);
 }
 
 void Activity::read_rows(const Table<BodySleep>& sleep) {
     rows_.clear();
     partners_.clear();
     pairs_.clear();
+    joints_.clear();
     row_count_ = sleep.count();
     for (BodyRow row = 0; row < row_count_; ++row) {
         const bool awake = sleep[row].asleep == 0;
@@ -45,6 +46,26 @@ void Activity::read_pairs(const Table<Pair>& pairs) {
             pairs_.push_back(index);
             add_partner(pair.row_a);
             add_partner(pair.row_b);
+        }
+    }
+}
+
+void Activity::read_joints(const Table<Joint>& joints) {
+    joints_.clear();
+    const std::uint32_t count = joints.count();
+    for (std::uint32_t index = 0; index < count; ++index) {
+        const Joint& joint = joints[index];
+        const bool has_a = joint.row_a != kNoIndex;
+        // Damaged rows must not lead outside.
+        if (joint.row_b >= row_count_ || (has_a && joint.row_a >= row_count_)) {
+            continue;
+        }
+        if (is_awake(joint.row_b) || (has_a && is_awake(joint.row_a))) {
+            joints_.push_back(index);
+            add_partner(joint.row_b);
+            if (has_a) {
+                add_partner(joint.row_a);
+            }
         }
     }
 }

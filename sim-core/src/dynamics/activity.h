@@ -8,22 +8,26 @@
 
 namespace lockwind {
 
-/// Who is awake in this tick, and the pairs that concern them: what every phase goes over, so that
-/// sleeping bodies cost nothing but the look at their flags. Scratch of one tick.
+/// Who is awake in this tick, and the pairs and joints that concern them: what every phase goes
+/// over, so that sleeping bodies cost nothing but the look at their flags. Scratch of one tick.
 class Activity {
 public:
-    Activity(std::uint32_t body_capacity, std::uint32_t pair_capacity);
+    explicit Activity(const DynamicsSettings& capacities);
 
     void read_rows(const Table<BodySleep>& sleep);
     /// After read_rows and the broad phase.
     void read_pairs(const Table<Pair>& pairs);
+    /// After read_rows.
+    void read_joints(const Table<Joint>& joints);
 
     /// In row order.
     std::span<const BodyRow> rows() const { return rows_; }
-    /// Sleeping rows that pairs() name, each once.
+    /// Sleeping rows that pairs() and joints() name, each once.
     std::span<const BodyRow> partners() const { return partners_; }
     /// Indices of pairs with a row that is awake, in pair order.
     std::span<const std::uint32_t> pairs() const { return pairs_; }
+    /// Rows of the joints with a body that is awake, ascending.
+    std::span<const std::uint32_t> joints() const { return joints_; }
     bool is_awake(BodyRow row) const { return part_[row] == Part::awake; }
 
 private:
@@ -35,6 +39,7 @@ private:
     std::vector<BodyRow> partners_;
     std::vector<Part> part_; // by row
     std::vector<std::uint32_t> pairs_;
+    std::vector<std::uint32_t> joints_;
 };
 
 } // namespace lockwind

@@ -153,7 +153,9 @@ void move_body(const StepConstants& constants,
         bound += (std::min(length_bound(turn), kTurnMax) * body.bounding_radius) >> kUnitFraction;
     }
     renew_stamps(bound, tick, motion);
-    if (turns_freely(body, travel.angular, turn, constants.substeps)) {
+    if (travel.orientation != nullptr) {
+        std::copy(travel.orientation, travel.orientation + 4, motion.orientation);
+    } else if (turns_freely(body, travel.angular, turn, constants.substeps)) {
         turn_freely(constants, travel.angular, body, motion);
     } else if ((turn[0] | turn[1] | turn[2]) != 0) {
         turn_by(turn, motion);

@@ -4,6 +4,7 @@
 #include "dynamics/body_frame.h"
 #include "dynamics/broad_phase.h"
 #include "dynamics/contact_kernel_choice.h"
+#include "dynamics/joined_pairs.h"
 #include "dynamics/manifold_slots.h"
 #include "dynamics/narrow_phase.h"
 #include "dynamics/sleep.h"
@@ -18,8 +19,8 @@ namespace lockwind {
 
 struct Dynamics::Impl {
     Impl(const DynamicsSettings& settings, Simd simd)
-        : activity(settings.body_capacity, settings.pair_capacity), frames(settings.body_capacity),
-          slots(settings.manifold_capacity), broad(settings), narrow(settings.body_capacity),
+        : activity(settings), frames(settings.body_capacity), slots(settings.manifold_capacity),
+          broad(settings), joined(settings.joint_capacity), narrow(settings.body_capacity),
           solver(settings, contact_kernels(simd)), sleep(settings) {
         // A pair that goes and one that comes both change in a tick.
         changes.reserve(2 * std::size_t{settings.pair_capacity});
@@ -29,6 +30,7 @@ struct Dynamics::Impl {
     void look(const DynamicsTables& tables) {
         activity.read_rows(tables.sleep);
         activity.read_pairs(tables.pairs);
+        activity.read_joints(tables.joints);
     }
     void refresh_frames(const DynamicsTables& tables) {
         frames.refresh(tables, activity.rows());
@@ -39,6 +41,7 @@ struct Dynamics::Impl {
     BodyFrames frames;
     ManifoldSlots slots;
     BroadPhase broad;
+    JoinedPairs joined;
     NarrowPhase narrow;
     Solver solver;
     Sleep sleep;
@@ -70,8 +73,9 @@ StepFault Dynamics::narrow_phase(const DynamicsTables& tables, std::uint32_t tic
     }
     impl_->refresh_frames(tables);
     impl_->slots.read(tables.manifolds);
+    impl_->joined.read(tables.joints);
     const StepFault fault = impl_->narrow.run(
-        tables, tick, impl_->frames, impl_->activity, impl_->slots, impl_->changes);
+        tables, tick, impl_->frames, impl_->activity, impl_->joined, impl_->slots, impl_->changes);
     std::sort(impl_->changes.begin(),
               impl_->changes.end(),
               [](const ContactChange& x, const ContactChange& y) {
@@ -116,6 +120,10 @@ std::span<const BodyRow> Dynamics::awake_rows() const {
     return impl_->activity.rows();
 }
 
+std::span<const std::uint32_t> Dynamics::broken_joints() const {
+    return impl_->solver.broken_joints();
+}
+
 void Dynamics::drop_derived() {
     impl_->frames.drop();
 }
@@ -128,9 +136,39 @@ void wake_dynamic(const DynamicsTables& tables, BodyRow row) {
     }
 }
 
+/// kNoIndex, a grab's other body, stays.
+void remap_joints(const DynamicsTables& tables, std::span<const BodyRow> new_row_of) {
+    const Table<Joint>& joints = tables.joints;
+    const auto moved_to = [&](BodyRow row) {
+        return row < new_row_of.size() ? new_row_of[row] : kNoIndex;
+    };
+    std::uint32_t kept = 0;
+    for (std::uint32_t index = 0; index < joints.count(); ++index) {
+        Joint joint = joints[index];
+        const bool is_grab = joint.row_a == kNoIndex;
+        joint.row_a = moved_to(joint.row_a);
+        joint.row_b = moved_to(joint.row_b);
+        if ((is_grab || joint.row_a != kNoIndex) && joint.row_b != kNoIndex) {
+            joints[kept++] = joint;
+        } else {
+            wake_joined(tables, joints[index]);
+        }
+    }
+    joints.set_count(kept);
+}
+
 } // namespace
 
+void wake_joined(const DynamicsTables& tables, const Joint& joint) {
+    for (const BodyRow row : {joint.row_a, joint.row_b}) {
+        if (row < tables.properties.count()) {
+            wake_dynamic(tables, row);
+        }
+    }
+}
+
 void remap_rows(const DynamicsTables& tables, std::span<const BodyRow> new_row_of) {
+    remap_joints(tables, new_row_of);
     const auto moved_to = [&](BodyRow row) {
         return row < new_row_of.size() ? new_row_of[row] : kNoIndex;
     };

@@ -3,6 +3,7 @@
 #include "base/table.h"
 #include "dynamics/body.h"
 #include "dynamics/contact.h"
+#include "dynamics/joint.h"
 
 #include "lockwind/simd.h"
 #include "lockwind/vector.h"
@@ -24,6 +25,7 @@ struct DynamicsSettings {
     std::uint32_t body_capacity = 0;
     std::uint32_t pair_capacity = 0;
     std::uint32_t manifold_capacity = 0;
+    std::uint32_t joint_capacity = 0;
 };
 
 /// Views of the arena's sections; motion, properties and sleep have the same rows.
@@ -33,6 +35,7 @@ struct DynamicsTables {
     Table<BodySleep> sleep;
     Table<Pair> pairs;
     Table<Manifold> manifolds;
+    Table<Joint> joints;
 };
 
 /// A capacity that ran out, or a body that left the bounds where that is an error. The tables stay
@@ -89,6 +92,8 @@ public:
     void restitution(const DynamicsTables& tables);
     /// Of the last solve and restitution.
     std::span<const ContactHit> contact_hits() const;
+    /// Rows of the joints that the last solve broke, ascending; they are still there.
+    std::span<const std::uint32_t> broken_joints() const;
 
     /// Puts islands to sleep that were slow for long enough.
     void sleep(const DynamicsTables& tables);
@@ -105,12 +110,14 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Wakes one body; the next tick's wake() wakes what it touches.
+/// Wakes one body; the next tick's wake() wakes what it touches and is joined to.
 void wake_body(const DynamicsTables& tables, BodyRow row);
+/// The same of both; kNoIndex and bodies that are not dynamic stay as they are.
+void wake_joined(const DynamicsTables& tables, const Joint& joint);
 
-/// Removes pairs (and frees manifolds) of rows that map to kNoIndex and renumbers the others.
-/// `new_row_of[old_row]`, monotone over the rows that stay. Appends contact-end changes to none.
-/// What touched a row that goes wakes.
+/// Removes pairs (and frees manifolds) and joints of rows that map to kNoIndex and renumbers the
+/// others. `new_row_of[old_row]`, monotone over the rows that stay. Appends contact-end changes to
+/// none. What touched or was joined to a row that goes wakes.
 void remap_rows(const DynamicsTables& tables, std::span<const BodyRow> new_row_of);
 
 } // namespace lockwind

@@ -1,5 +1,6 @@
 #include "dynamics/make_body.h"
 
+#include "dynamics/definition_checker.h"
 #include "geometry/bounds.h"
 #include "geometry/fixed_geometry.h"
 #include "geometry/mass.h"
@@ -31,66 +32,7 @@ constexpr std::int32_t kGyrationRadiusMin = 33027;
 /// coefficients are below 8 (Q3.28).
 constexpr std::int64_t kLeverageMax = 62; // in eighths: 7.75
 
-/// Decimal text with up to six places, truncated.
-std::string text_of(Real value) {
-    const std::uint64_t raw = raw_magnitude(value.raw());
-    std::string digits = std::to_string((raw & 0xffffffffU) * 1000000 >> 32U);
-    digits.insert(0, 6 - digits.size(), '0');
-    while (digits.size() > 1 && digits.back() == '0') {
-        digits.pop_back();
-    }
-    return (value < 0 ? "-" : "") + std::to_string(raw >> 32U) + "." + digits;
-}
-
-class Checker {
-public:
-    explicit Checker(BodyId id) : id_(id) {}
-
-    bool failed() const { return error_.has_value(); }
-    const Error& error() const { return *error_; }
-
-    /// The first complaint stays.
-    void fail(const std::string& field, const std::string& what) {
-        if (!error_) {
-            error_ = Error{"body " + std::to_string(id_) + ": " + field + " " + what};
-        }
-    }
-    void require(bool condition, const char* field, const char* what) {
-        if (!condition) {
-            fail(field, what);
-        }
-    }
-    void range(const char* field, Real value, Real low, Real high, const char* unit) {
-        if (value < low || value > high) {
-            fail(field,
-                 "is " + text_of(value) + "; it must be within " + text_of(low) + " .. " +
-                     text_of(high) + unit);
-        }
-    }
-    void vector_range(const char* field, const Vec3& value, Real limit, const char* unit) {
-        const std::string name = field;
-        range((name + ".x").c_str(), value.x, -limit, limit, unit);
-        range((name + ".y").c_str(), value.y, -limit, limit, unit);
-        range((name + ".z").c_str(), value.z, -limit, limit, unit);
-    }
-    void speed(const char* field, const Vec3& value, Real limit, const char* unit) {
-        vector_range(field, value, limit, unit);
-        if (failed()) {
-            return;
-        }
-        const auto square =
-            product(value.x, value.x) + product(value.y, value.y) + product(value.z, value.z);
-        if (square > product(limit, limit)) {
-            fail(field, "is longer than " + text_of(limit) + unit);
-        }
-    }
-
-private:
-    BodyId id_;
-    std::optional<Error> error_;
-};
-
-void check_shape(const ShapeDefinition& shape, BodyMode mode, Checker& checker) {
+void check_shape(const ShapeDefinition& shape, BodyMode mode, DefinitionChecker& checker) {
     // Compared as it will be stored, so that a stored size is always a valid one.
     const auto size = [&](const char* field, Real value) {
         const auto stored = convert_saturated<Length>(value);
@@ -121,7 +63,7 @@ void check_shape(const ShapeDefinition& shape, BodyMode mode, Checker& checker) 
 
 void check_motion(const BodyDefinition& definition,
                   const WorldSettings& settings,
-                  Checker& checker) {
+                  DefinitionChecker& checker) {
     const RealQuat& q = definition.orientation;
     checker.vector_range("position", definition.position, kBodyPositionMax, " m");
     checker.require(
@@ -145,7 +87,7 @@ void check_motion(const BodyDefinition& definition,
 
 void check_definition(const BodyDefinition& definition,
                       const WorldSettings& settings,
-                      Checker& checker) {
+                      DefinitionChecker& checker) {
     constexpr BodyId kSceneIdMax = 0xffffffffU;
     checker.require(definition.id >= 1 && definition.id <= kSceneIdMax,
                     "id",
@@ -215,7 +157,9 @@ std::int64_t arm_about(const ShapeDefinition& shape, const BodyProperties& prope
 }
 
 /// rho = (k_min k_max)^(1/4), rho^2 / k_i, with k = I / m.
-void fill_inertia(const ShapeDefinition& shape, BodyProperties& properties, Checker& checker) {
+void fill_inertia(const ShapeDefinition& shape,
+                  BodyProperties& properties,
+                  DefinitionChecker& checker) {
     const UnitInertia inertia = unit_inertia(shape.type, properties.size);
     const auto moment = [&](int axis) {
         return static_cast<std::uint64_t>(inertia.moment[axis].raw());
@@ -246,7 +190,9 @@ void fill_inertia(const ShapeDefinition& shape, BodyProperties& properties, Chec
     checker.require(bearable, "shape", "is too slender; it may be about 10 times as long as thick");
 }
 
-void fill_mass(const BodyDefinition& definition, BodyProperties& properties, Checker& checker) {
+void fill_mass(const BodyDefinition& definition,
+               BodyProperties& properties,
+               DefinitionChecker& checker) {
     const bool by_density = definition.mass == 0;
     const Real mass = by_density
                           ? mass_of(definition.shape.type, properties.size, definition.density)
@@ -263,7 +209,9 @@ void fill_mass(const BodyDefinition& definition, BodyProperties& properties, Che
         static_cast<std::int64_t>(divide_wide(one, static_cast<std::uint64_t>(mass.raw())).low);
 }
 
-void fill_build(const BodyDefinition& definition, BodyProperties& properties, Checker& checker) {
+void fill_build(const BodyDefinition& definition,
+                BodyProperties& properties,
+                DefinitionChecker& checker) {
     const auto radius = convert<Real>(Length::from_raw(properties.bounding_radius));
     const bool fixed = definition.mode == BodyMode::fixed;
     checker.range("shape's bounding radius",
@@ -311,7 +259,7 @@ void fill_orientation(const RealQuat& orientation, BodyMotion& motion) {
 void fill_velocities(const BodyDefinition& definition,
                      const BodyProperties& properties,
                      BodyMotion& motion,
-                     Checker& checker) {
+                     DefinitionChecker& checker) {
     const Vec3& linear = definition.linear_velocity;
     motion.linear_velocity[0] = convert<Velocity>(linear.x).raw();
     motion.linear_velocity[1] = convert<Velocity>(linear.y).raw();
@@ -338,7 +286,7 @@ Status make_body(const BodyDefinition& definition,
                  const WorldSettings& settings,
                  BodyMotion& motion,
                  BodyProperties& properties) {
-    Checker checker(definition.id);
+    DefinitionChecker checker("body", definition.id);
     check_definition(definition, settings, checker);
     if (checker.failed()) {
         return checker.error();

@@ -42,6 +42,13 @@ public:
 
     /// False where the manifold table is full. The pair then does not touch.
     bool visit(Pair& pair);
+    /// The pair does not touch, and will be looked at when it next may.
+    void leave(Pair& pair) {
+        pair.stamp = 0;
+        if (pair.point_count != 0) {
+            release(pair);
+        }
+    }
 
 private:
     bool is_still(const Pair& pair) const;
@@ -293,6 +300,7 @@ StepFault NarrowPhase::run(const DynamicsTables& tables,
                            std::uint32_t tick,
                            const BodyFrames& frames,
                            const Activity& activity,
+                           const JoinedPairs& joined,
                            ManifoldSlots& slots,
                            std::vector<ContactChange>& changes) {
     read_gates(tables, frames, activity.rows());
@@ -301,11 +309,15 @@ StepFault NarrowPhase::run(const DynamicsTables& tables,
     StepFault fault = StepFault::none;
     for (const std::uint32_t index : activity.pairs()) {
         Pair& pair = tables.pairs[index];
-        if (!is_sound(pair, tables) || !needs_look(pair) || has_plane_only(pair, frames)) {
+        if (!is_sound(pair, tables)) {
             continue;
         }
         const bool touched = is_touching(pair);
-        if (!look.visit(pair)) {
+        if (joined.has(pair.row_a, pair.row_b)) {
+            look.leave(pair);
+        } else if (!needs_look(pair) || has_plane_only(pair, frames)) {
+            continue;
+        } else if (!look.visit(pair)) {
             fault = StepFault::manifolds_full;
         }
         if (is_touching(pair) != touched) {

@@ -3,6 +3,7 @@
 #include "dynamics/activity.h"
 #include "dynamics/body_frame.h"
 #include "dynamics/dynamics.h"
+#include "dynamics/joined_pairs.h"
 #include "dynamics/manifold_slots.h"
 
 #include <cstdint>
@@ -24,11 +25,12 @@ public:
     explicit NarrowPhase(std::uint32_t body_capacity);
 
     /// Appends what began and ceased to touch to `changes`, in pair order. Where the manifolds run
-    /// out, the pairs that find none do not touch.
+    /// out, the pairs that find none do not touch. Nor do `joined` ones.
     StepFault run(const DynamicsTables& tables,
                   std::uint32_t tick,
                   const BodyFrames& frames,
                   const Activity& activity,
+                  const JoinedPairs& joined,
                   ManifoldSlots& slots,
                   std::vector<ContactChange>& changes);
 

@@ -50,6 +50,26 @@ bool is_bond(const Pair& pair, const DynamicsTables& tables) {
            is_dynamic(tables, pair.row_b);
 }
 
+/// Where one of the two is a kinematic body that moves.
+void keep_awake_if_carried(const DynamicsTables& tables, BodyRow a, BodyRow b) {
+    const auto carries = [&](BodyRow row) {
+        return !is_dynamic(tables, row) && tables.sleep[row].asleep == 0;
+    };
+    if (carries(a)) {
+        tables.sleep[b].still_ticks = 0;
+    }
+    if (carries(b)) {
+        tables.sleep[a].still_ticks = 0;
+    }
+}
+
+/// Whether the joint holds two dynamic bodies together. Damaged rows must not lead outside.
+bool is_bond(const Joint& joint, const DynamicsTables& tables) {
+    const std::uint32_t count = tables.properties.count();
+    return joint.row_a < count && joint.row_b < count && is_dynamic(tables, joint.row_a) &&
+           is_dynamic(tables, joint.row_b);
+}
+
 bool is_woken_by(BodyRow row,
                  BodyRow other,
                  const DynamicsTables& tables,
@@ -76,9 +96,12 @@ bool Sleep::wake(const DynamicsTables& tables, const Activity& activity) {
         if (!is_pressing(pair, tables)) {
             continue;
         }
-        const bool a_wakes = is_woken_by(pair.row_a, pair.row_b, tables, activity);
-        if (a_wakes || is_woken_by(pair.row_b, pair.row_a, tables, activity)) {
-            rows_.push_back(a_wakes ? pair.row_a : pair.row_b);
+        find_woken(pair.row_a, pair.row_b, tables, activity);
+    }
+    for (const std::uint32_t index : activity.joints()) {
+        const Joint& joint = tables.joints[index];
+        if (joint.row_a != kNoIndex) {
+            find_woken(joint.row_a, joint.row_b, tables, activity);
         }
     }
     if (rows_.empty()) {
@@ -95,6 +118,18 @@ bool Sleep::wake(const DynamicsTables& tables, const Activity& activity) {
     return true;
 }
 
+/// Adds the one of the two that the other wakes to rows_.
+void Sleep::find_woken(BodyRow a,
+                       BodyRow b,
+                       const DynamicsTables& tables,
+                       const Activity& activity) {
+    if (is_woken_by(a, b, tables, activity)) {
+        rows_.push_back(a);
+    } else if (is_woken_by(b, a, tables, activity)) {
+        rows_.push_back(b);
+    }
+}
+
 /// Islands of all that sleep; marks those of rows_.
 void Sleep::join_sleepers(const DynamicsTables& tables, const Activity& activity) {
     const std::uint32_t count = tables.motion.count();
@@ -106,6 +141,12 @@ void Sleep::join_sleepers(const DynamicsTables& tables, const Activity& activity
         if (pair.row_a < pair.row_b && pair.row_b < count && is_bond(pair, tables) &&
             !activity.is_awake(pair.row_a) && !activity.is_awake(pair.row_b)) {
             islands_.join(pair.row_a, pair.row_b);
+        }
+    }
+    for (const Joint& joint : tables.joints.rows()) {
+        if (is_bond(joint, tables) && !activity.is_awake(joint.row_a) &&
+            !activity.is_awake(joint.row_b)) {
+            islands_.join(joint.row_a, joint.row_b);
         }
     }
     for (const BodyRow row : rows_) {
@@ -156,22 +197,19 @@ bool Sleep::count_still_ticks(const DynamicsTables& tables, std::span<const Body
     return is_due;
 }
 
-/// What lies on a kinematic body that moves is carried along.
+/// What lies on a kinematic body that moves, or hangs on it, is carried along.
 void Sleep::keep_carried_awake(const DynamicsTables& tables, const Activity& activity) {
     for (const std::uint32_t index : activity.pairs()) {
         const Pair& pair = tables.pairs[index];
         if (!is_pressing(pair, tables)) {
             continue;
         }
-        const bool a_carries =
-            !is_dynamic(tables, pair.row_a) && tables.sleep[pair.row_a].asleep == 0;
-        const bool b_carries =
-            !is_dynamic(tables, pair.row_b) && tables.sleep[pair.row_b].asleep == 0;
-        if (a_carries) {
-            tables.sleep[pair.row_b].still_ticks = 0;
-        }
-        if (b_carries) {
-            tables.sleep[pair.row_a].still_ticks = 0;
+        keep_awake_if_carried(tables, pair.row_a, pair.row_b);
+    }
+    for (const std::uint32_t index : activity.joints()) {
+        const Joint& joint = tables.joints[index];
+        if (joint.row_a != kNoIndex) {
+            keep_awake_if_carried(tables, joint.row_a, joint.row_b);
         }
     }
 }
@@ -186,6 +224,12 @@ void Sleep::join_awake(const DynamicsTables& tables, const Activity& activity) {
         const Pair& pair = tables.pairs[index];
         if (is_bond(pair, tables)) {
             islands_.join(pair.row_a, pair.row_b);
+        }
+    }
+    for (const std::uint32_t index : activity.joints()) {
+        const Joint& joint = tables.joints[index];
+        if (is_bond(joint, tables)) {
+            islands_.join(joint.row_a, joint.row_b);
         }
     }
     for (const BodyRow row : rows_) {

@@ -11,8 +11,8 @@
 namespace lockwind {
 
 /// Puts islands to sleep that were slow for long enough, and wakes them. An island is what touching
-/// pairs join; it sleeps and wakes as a whole. Between ticks it is not stored: it follows from the
-/// pairs.
+/// pairs and joints hold together; it sleeps and wakes as a whole. Between ticks it is not stored:
+/// it follows from the pairs.
 class Sleep {
 public:
     explicit Sleep(const DynamicsSettings& settings);
@@ -29,6 +29,7 @@ public:
     void clear_changes() { changes_.clear(); }
 
 private:
+    void find_woken(BodyRow a, BodyRow b, const DynamicsTables& tables, const Activity& activity);
     void join_sleepers(const DynamicsTables& tables, const Activity& activity);
     bool count_still_ticks(const DynamicsTables& tables, std::span<const BodyRow> rows);
     void keep_carried_awake(const DynamicsTables& tables, const Activity& activity);

@@ -3,7 +3,7 @@
 namespace lockwind {
 
 Solver::Solver(const DynamicsSettings& settings, const ContactKernels& kernels)
-    : constants_(make_step_constants(settings)), bodies_(settings.body_capacity),
+    : constants_(make_step_constants(settings)), bodies_(settings.body_capacity), joints_(settings),
       contacts_(settings, kernels) {}
 
 void Solver::solve(const DynamicsTables& tables,
@@ -11,16 +11,23 @@ void Solver::solve(const DynamicsTables& tables,
                    const BodyFrames& frames,
                    const Activity& activity) {
     bodies_.read(constants_, tables, frames, activity);
+    joints_.prepare(constants_, tables, activity, bodies_);
     contacts_.prepare(constants_, tables, frames, activity, bodies_);
     for (std::uint32_t substep = 0; substep < constants_.substeps; ++substep) {
+        joints_.begin_substep(bodies_);
         bodies_.integrate_velocities(constants_, substep);
+        joints_.warm_start(bodies_);
         if (substep == 0) {
             contacts_.warm_start(bodies_);
         }
+        joints_.solve(bodies_);
         contacts_.solve(bodies_);
         bodies_.integrate_positions(constants_);
+        joints_.follow(constants_, tables, bodies_);
+        joints_.relax(bodies_);
         contacts_.relax(bodies_);
     }
+    joints_.write(constants_, tables);
     contacts_.write(tables);
     bodies_.write(constants_, tables, tick);
 }

@@ -4,6 +4,7 @@
 #include "dynamics/contact_kernels.h"
 #include "dynamics/contact_solver.h"
 #include "dynamics/dynamics.h"
+#include "dynamics/joint_solver.h"
 #include "dynamics/solver_bodies.h"
 #include "dynamics/step_constants.h"
 
@@ -23,10 +24,12 @@ public:
                const Activity& activity);
     void restitution(const DynamicsTables& tables);
     std::span<const ContactHit> hits() const { return contacts_.hits(); }
+    std::span<const std::uint32_t> broken_joints() const { return joints_.broken(); }
 
 private:
     StepConstants constants_;
     SolverBodies bodies_;
+    JointSolver joints_;
     ContactSolver contacts_;
 };
 

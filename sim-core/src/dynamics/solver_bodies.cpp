@@ -82,7 +82,7 @@ void SolverBodies::read_body(const StepConstants& constants,
     SolverBody& solver = bodies_[row];
     Course& course = courses_[row];
     solver = SolverBody{};
-    course.travel = BodyTravel{};
+    course = Course{};
     speed_bound_[row] = 0;
     if (body.mode == kFixed) {
         return;
@@ -127,6 +127,27 @@ void SolverBodies::integrate_velocities(const StepConstants& constants, std::uin
             body.linear[axis] = raw_add(course.linear_free[axis], linear_change);
             body.angular[axis] = raw_add(course.angular_free[axis], angular_change);
         }
+    }
+}
+
+void SolverBodies::give(BodyRow row, const std::int64_t linear[3], const std::int64_t angular[3]) {
+    // Held to what all rows and contacts together keep in the format.
+    constexpr std::int64_t kLinearMax =
+        kSolverLinearSpeedMax.raw() >> (Real::kFraction - kVelocityFraction);
+    constexpr std::int64_t kAngularMax =
+        kSolverAngularSpeedMax.raw() >> (Real::kFraction - kVelocityFraction);
+    const auto change =
+        [](std::int32_t& now, std::int32_t& free, std::int64_t by, std::int64_t most) {
+            const std::int64_t held = std::clamp(by, -2 * most, 2 * most);
+            const auto next = static_cast<std::int32_t>(std::clamp(now + held, -most, most));
+            free = raw_add(free, raw_subtract(next, now));
+            now = next;
+        };
+    SolverBody& body = bodies_[row];
+    Course& course = courses_[row];
+    for (int axis = 0; axis < 3; ++axis) {
+        change(body.linear[axis], course.linear_free[axis], linear[axis], kLinearMax);
+        change(body.angular[axis], course.angular_free[axis], angular[axis], kAngularMax);
     }
 }
 

@@ -23,10 +23,18 @@ public:
               const DynamicsTables& tables,
               const BodyFrames& frames,
               const Activity& activity);
-    /// Gravity, and what the constraints did in the substep before: that is a later substep's warm
+    /// Gravity, and what the contacts did in the substep before: that is a later substep's warm
     /// start.
     void integrate_velocities(const StepConstants& constants, std::uint32_t substep);
     void integrate_positions(const StepConstants& constants);
+    /// Changes velocities, Q11.20 m/s, by what is not to be repeated in the next substep: what
+    /// turns with the bodies, as joints do, starts anew there.
+    void give(BodyRow row, const std::int64_t linear[3], const std::int64_t angular[3]);
+    /// The body's orientation at the tick's end, of one that is followed substep by substep;
+    /// `orientation` must live until write().
+    void set_orientation(BodyRow row, const std::int32_t* orientation) {
+        courses_[row].travel.orientation = orientation;
+    }
     void write(const StepConstants& constants, const DynamicsTables& tables, std::uint32_t tick);
 
     /// The arena's velocities as they are now, and back: what happens after the substeps counts
@@ -35,15 +43,19 @@ public:
     void write_velocities(const StepConstants& constants, const DynamicsTables& tables);
 
     /// By row, of those that are awake and their partners; one more at rest, of the lanes without
-    /// a contact.
+    /// a contact; it is that of kNoIndex too.
     SolverBody* bodies() { return bodies_.data(); }
     BodyRow padding_row() const { return padding_row_; }
+    SolverBody& body(BodyRow row) { return bodies_[row == kNoIndex ? padding_row_ : row]; }
+    const SolverBody& body(BodyRow row) const {
+        return bodies_[row == kNoIndex ? padding_row_ : row];
+    }
     const BodyTerms& terms(BodyRow row) const { return terms_[row]; }
     /// Q11.20 m/s at the tick's start, of any point of the body.
     std::int32_t speed_bound(BodyRow row) const { return speed_bound_[row]; }
 
 private:
-    /// Velocities before the constraints' impulses of a substep, and the substeps' sum.
+    /// Velocities before the contacts' impulses of a substep, and the substeps' sum.
     struct Course {
         std::int32_t linear_free[4];
         std::int32_t angular_free[4];

@@ -1,4 +1,5 @@
 #include "dynamics/make_body.h"
+#include "dynamics/make_joint.h"
 #include "systems/motion.h"
 #include "systems/pod.h"
 #include "world/definition.h"
@@ -17,9 +18,10 @@ std::uint32_t creations_max(std::size_t pods) {
 }
 
 /// A pair changes once and hits once a tick; a body is created or destroyed once, wakes once and
-/// falls asleep once, and a ball scores once.
+/// falls asleep once, and a ball scores once; a joint breaks once.
 std::size_t events_max(const DynamicsSettings& capacities) {
-    return std::size_t{3} * capacities.pair_capacity + std::size_t{5} * capacities.body_capacity;
+    return std::size_t{3} * capacities.pair_capacity + std::size_t{5} * capacities.body_capacity +
+           capacities.joint_capacity;
 }
 
 std::array<std::uint32_t, section::kCount> capacities_of(const DynamicsSettings& capacities,
@@ -32,6 +34,7 @@ std::array<std::uint32_t, section::kCount> capacities_of(const DynamicsSettings&
     rows[section::kBodySleep] = capacities.body_capacity;
     rows[section::kPair] = capacities.pair_capacity;
     rows[section::kManifold] = capacities.manifold_capacity;
+    rows[section::kJoint] = capacities.joint_capacity;
     rows[section::kPlayer] = static_cast<std::uint32_t>(pods);
     return rows;
 }
@@ -57,6 +60,29 @@ Status make_bodies(const WorldDefinition& definition, const DynamicsTables& tabl
     return Success{};
 }
 
+Status make_joints(const WorldDefinition& definition, const DynamicsTables& tables) {
+    std::vector<const JointDefinition*> sorted;
+    for (const JointDefinition& joint : definition.joints) {
+        sorted.push_back(&joint);
+    }
+    std::sort(sorted.begin(), sorted.end(), [](const JointDefinition* a, const JointDefinition* b) {
+        return a->id < b->id;
+    });
+    tables.joints.set_count(static_cast<std::uint32_t>(sorted.size()));
+    for (std::uint32_t row = 0; row < sorted.size(); ++row) {
+        const JointDefinition& joint = *sorted[row];
+        if (Status made = make_joint(joint,
+                                     tables,
+                                     row_of(tables.motion, joint.body_a),
+                                     row_of(tables.motion, joint.body_b),
+                                     tables.joints[row]);
+            !made) {
+            return made;
+        }
+    }
+    return Success{};
+}
+
 } // namespace
 
 World::Impl::Impl(const WorldDefinition& definition,
@@ -75,7 +101,8 @@ DynamicsTables World::Impl::tables_of(StateArena& arena) {
             arena.table<BodyProperties>(section::kBodyProperties),
             arena.table<BodySleep>(section::kBodySleep),
             arena.table<Pair>(section::kPair),
-            arena.table<Manifold>(section::kManifold)};
+            arena.table<Manifold>(section::kManifold),
+            arena.table<Joint>(section::kJoint)};
 }
 
 World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -94,6 +121,9 @@ Result<WorldPtr> World::create(const WorldDefinition& definition, Simd simd) {
     auto impl = std::make_unique<Impl>(definition, capacities, simd, std::move(pods).value());
     const DynamicsTables tables = impl->tables();
     if (Status status = make_bodies(definition, tables); !status) {
+        return status.error();
+    }
+    if (Status status = make_joints(definition, tables); !status) {
         return status.error();
     }
     impl->arena.set_row_count(section::kGlobals, 1);

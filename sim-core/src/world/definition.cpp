@@ -52,10 +52,29 @@ Status check_settings(const WorldSettings& settings) {
         }
     }
     if (settings.body_capacity > kBodyCapacityMax || settings.pair_capacity > kPairCapacityMax ||
-        settings.manifold_capacity > kPairCapacityMax) {
-        return Error{"settings: body_capacity must be at most " + std::to_string(kBodyCapacityMax) +
+        settings.manifold_capacity > kPairCapacityMax ||
+        settings.joint_capacity > kJointCapacityMax) {
+        return Error{"settings: body_capacity and joint_capacity must be at most " +
+                     std::to_string(kBodyCapacityMax) +
                      ", pair_capacity and manifold_capacity at most " +
                      std::to_string(kPairCapacityMax)};
+    }
+    return Success{};
+}
+
+Status check_joints(const WorldDefinition& definition, std::uint32_t capacity) {
+    std::vector<JointId> ids;
+    for (const JointDefinition& joint : definition.joints) {
+        ids.push_back(joint.id);
+    }
+    std::sort(ids.begin(), ids.end());
+    const auto twin = std::adjacent_find(ids.begin(), ids.end());
+    if (twin != ids.end()) {
+        return Error{"joint " + std::to_string(*twin) + ": id is used twice"};
+    }
+    if (ids.size() > capacity) {
+        return Error{"settings: joint_capacity of " + std::to_string(capacity) +
+                     " is too small for the scene's " + std::to_string(ids.size()) + " joints"};
     }
     return Success{};
 }
@@ -109,7 +128,7 @@ Status check_definition(const WorldDefinition& definition) {
                      " is too small for the scene's " + std::to_string(definition.bodies.size()) +
                      " bodies"};
     }
-    return Success{};
+    return check_joints(definition, dynamics.joint_capacity);
 }
 
 DynamicsSettings dynamics_settings(const WorldDefinition& definition) {
@@ -136,6 +155,8 @@ DynamicsSettings dynamics_settings(const WorldDefinition& definition) {
         settings.pair_capacity, capacity * (24 + plane_count(definition)) + 256, kPairCapacityMax);
     dynamics.manifold_capacity =
         derived(settings.manifold_capacity, capacity * 12 + 256, kPairCapacityMax);
+    dynamics.joint_capacity =
+        derived(settings.joint_capacity, definition.joints.size() + 64, kJointCapacityMax);
     return dynamics;
 }
 

@@ -86,6 +86,7 @@ WorldCounts World::counts() const {
         counts.contacts += pair.point_count;
         counts.manifolds += pair.manifold != kNoIndex ? 1 : 0;
     }
+    counts.joints = tables.joints.count();
     const Globals& globals = impl_->globals();
     counts.events_total = globals.events_total;
     counts.created_total = globals.created_total;

@@ -20,6 +20,9 @@ Status World::Impl::validate(StateArena& state, const DynamicsTables* known) {
     if (Status status = check_bodies(rows, known, settings); !status) {
         return status;
     }
+    if (Status status = check_joints(rows); !status) {
+        return status;
+    }
     return check_contacts(rows, manifold_seen);
 }
 

@@ -2,6 +2,7 @@
 
 #include "dynamics/body.h"
 #include "dynamics/contact.h"
+#include "dynamics/joint.h"
 #include "systems/player.h"
 
 #include "lockwind/schema.h"
@@ -32,9 +33,10 @@ struct RowCounts {
     std::uint32_t body_sleep;
     std::uint32_t pair;
     std::uint32_t manifold;
+    std::uint32_t joint;
     std::uint32_t player;
 };
-static_assert(sizeof(RowCounts) == 32);
+static_assert(sizeof(RowCounts) == 36);
 
 /// Sections by number, in the order of kWorldSections.
 namespace section {
@@ -45,8 +47,9 @@ inline constexpr std::uint32_t kBodyProperties = 3;
 inline constexpr std::uint32_t kBodySleep = 4;
 inline constexpr std::uint32_t kPair = 5;
 inline constexpr std::uint32_t kManifold = 6;
-inline constexpr std::uint32_t kPlayer = 7;
-inline constexpr std::uint32_t kCount = 8;
+inline constexpr std::uint32_t kJoint = 7;
+inline constexpr std::uint32_t kPlayer = 8;
+inline constexpr std::uint32_t kCount = 9;
 } // namespace section
 
 inline constexpr std::array kRowCountsFields{
@@ -57,6 +60,7 @@ inline constexpr std::array kRowCountsFields{
     LOCKWIND_FIELD(RowCounts, body_sleep, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, pair, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, manifold, 0, "", ""),
+    LOCKWIND_FIELD(RowCounts, joint, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, player, 0, "", ""),
 };
 
@@ -77,6 +81,7 @@ inline constexpr std::array<SectionDescriptor, section::kCount> kWorldSections{{
     {"body_sleep", "dynamics", sizeof(BodySleep), false, "", kBodySleepFields},
     {"pair", "dynamics", sizeof(Pair), false, "", kPairFields},
     {"manifold", "dynamics", sizeof(Manifold), false, "", kManifoldFields},
+    {"joint", "dynamics", sizeof(Joint), false, "id", kJointFields},
     {"player", "systems", sizeof(Player), false, "", kPlayerFields},
 }};
 

@@ -38,6 +38,7 @@ private:
     void report_contacts();
     void score_hits();
     void destroy(BodyRow row);
+    void break_joints();
     void despawn();
     StepFault keep_in_bounds();
     void remove_outside(BodyRow row);
@@ -149,6 +150,7 @@ StepFault Step::sleep() {
 /// Contacts and hits are told by row, so they are turned into events before rows move.
 StepFault Step::spawns_despawns() {
     report_contacts();
+    break_joints();
     score_hits();
     despawn();
     if (const StepFault fault = keep_in_bounds(); fault != StepFault::none) {
@@ -183,6 +185,27 @@ void Step::report_contacts() {
         const EventType type = change.asleep ? EventType::fell_asleep : EventType::woke;
         world_.events.add(type, id(change.row), 0, 0);
     }
+}
+
+void Step::break_joints() {
+    const std::span<const std::uint32_t> broken = world_.dynamics.broken_joints();
+    const auto body_id = [&](BodyRow row) { return row == kNoIndex ? 0 : id(row); };
+    std::uint32_t kept = 0;
+    std::size_t next = 0;
+    for (std::uint32_t row = 0; row < tables_.joints.count(); ++row) {
+        const Joint joint = tables_.joints[row];
+        if (next < broken.size() && broken[next] == row) {
+            ++next;
+            wake_joined(tables_, joint);
+            world_.events.add(EventType::joint_break,
+                              body_id(joint.row_a),
+                              id(joint.row_b),
+                              static_cast<std::int64_t>(joint.id));
+        } else {
+            tables_.joints[kept++] = joint;
+        }
+    }
+    tables_.joints.set_count(kept);
 }
 
 void Step::score_hits() {

@@ -2,6 +2,7 @@
 
 #include "dynamics/bounds_grid.h"
 #include "dynamics/make_body.h"
+#include "dynamics/make_joint.h"
 #include "dynamics/pairing.h"
 #include "geometry/fixed_geometry.h"
 #include "geometry/manifold.h"
@@ -382,6 +383,19 @@ Status check_bodies(const DynamicsTables& tables,
         if (spawner != kNoIndex &&
             static_cast<std::uint32_t>(motion.id) > tables.properties[spawner].spawn_count) {
             return bad("body_properties", spawner, "spawn_count");
+        }
+    }
+    return Success{};
+}
+
+Status check_joints(const DynamicsTables& tables) {
+    for (std::uint32_t row = 0; row < tables.joints.count(); ++row) {
+        const Joint& joint = tables.joints[row];
+        if (joint.id == 0 || (row > 0 && tables.joints[row - 1].id >= joint.id)) {
+            return bad("joint", row, "id");
+        }
+        if (const char* field = bad_joint_field(tables, joint); field != nullptr) {
+            return bad("joint", row, field);
         }
     }
     return Success{};

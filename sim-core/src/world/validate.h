@@ -25,6 +25,8 @@ Status check_players(const Table<Player>& players, std::span<const BodyId> pods)
 Status check_bodies(const DynamicsTables& tables,
                     const DynamicsTables* known,
                     const WorldSettings& settings);
+/// Of bodies that are checked.
+Status check_joints(const DynamicsTables& tables);
 /// `seen` is scratch of manifold capacity.
 Status check_contacts(const DynamicsTables& tables, std::span<std::uint8_t> seen);
 

@@ -4,6 +4,7 @@
 #include "dynamics/activity.h"
 #include "dynamics/dynamics.h"
 #include "dynamics/make_body.h"
+#include "dynamics/make_joint.h"
 
 #include "lockwind/world_definition.h"
 
@@ -17,18 +18,20 @@
 
 namespace lockwind {
 
-/// All that a Dynamics reads and writes: four tables and the tick.
+/// All that a Dynamics reads and writes: its tables and the tick.
 struct DynamicsState {
     std::vector<BodyMotion> motion;
     std::vector<BodyProperties> properties;
     std::vector<BodySleep> sleep;
     std::vector<Pair> pairs;
     std::vector<Manifold> manifolds;
+    std::vector<Joint> joints;
     std::uint32_t motion_count = 0;
     std::uint32_t properties_count = 0;
     std::uint32_t sleep_count = 0;
     std::uint32_t pair_count = 0;
     std::uint32_t manifold_count = 0;
+    std::uint32_t joint_count = 0;
     std::uint32_t tick = 0;
 };
 
@@ -38,9 +41,9 @@ inline bool same_bits(const DynamicsState& a, const DynamicsState& b) {
                std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
     };
     return a.tick == b.tick && a.motion_count == b.motion_count && a.pair_count == b.pair_count &&
-           a.manifold_count == b.manifold_count && same(a.motion, b.motion) &&
-           same(a.properties, b.properties) && same(a.sleep, b.sleep) && same(a.pairs, b.pairs) &&
-           same(a.manifolds, b.manifolds);
+           a.manifold_count == b.manifold_count && a.joint_count == b.joint_count &&
+           same(a.motion, b.motion) && same(a.properties, b.properties) && same(a.sleep, b.sleep) &&
+           same(a.pairs, b.pairs) && same(a.manifolds, b.manifolds) && same(a.joints, b.joints);
 }
 
 /// A Dynamics over tables in vectors, for tests: no world, no players, no despawning.
@@ -56,6 +59,7 @@ public:
         state_.sleep.resize(capacity);
         state_.pairs.resize(pair_capacity());
         state_.manifolds.resize(manifold_capacity());
+        state_.joints.resize(capacity);
         renew();
     }
 
@@ -68,7 +72,9 @@ public:
         renew();
     }
     /// A Dynamics that remembers nothing.
-    void renew() {
+    void renew() { dynamics_ = std::make_unique<Dynamics>(dynamics_settings()); }
+
+    DynamicsSettings dynamics_settings() const {
         DynamicsSettings settings;
         settings.tick_rate_hz = settings_.tick_rate_hz;
         settings.substeps = settings_.substeps;
@@ -80,7 +86,8 @@ public:
         settings.body_capacity = capacity_;
         settings.pair_capacity = pair_capacity();
         settings.manifold_capacity = manifold_capacity();
-        dynamics_ = std::make_unique<Dynamics>(settings);
+        settings.joint_capacity = capacity_;
+        return settings;
     }
 
     BodyRow add(BodyDefinition definition) {
@@ -94,12 +101,29 @@ public:
         return row;
     }
 
+    /// Between bodies that the definition names by row + 1, their ids here.
+    std::uint32_t add(JointDefinition definition) {
+        const std::uint32_t row = state_.joint_count++;
+        definition.id = row + 1;
+        const auto row_of = [](BodyId id) {
+            return id == 0 ? kNoIndex : static_cast<BodyRow>(id - 1);
+        };
+        const Status made = make_joint(definition,
+                                       tables(),
+                                       row_of(definition.body_a),
+                                       row_of(definition.body_b),
+                                       state_.joints[row]);
+        EXPECT_TRUE(made.ok()) << made.error().message;
+        return row;
+    }
+
     DynamicsTables tables() {
         return {{state_.motion.data(), &state_.motion_count, capacity_},
                 {state_.properties.data(), &state_.properties_count, capacity_},
                 {state_.sleep.data(), &state_.sleep_count, capacity_},
                 {state_.pairs.data(), &state_.pair_count, pair_capacity()},
-                {state_.manifolds.data(), &state_.manifold_count, manifold_capacity()}};
+                {state_.manifolds.data(), &state_.manifold_count, manifold_capacity()},
+                {state_.joints.data(), &state_.joint_count, capacity_}};
     }
 
     void step() {
@@ -119,14 +143,16 @@ public:
 
     /// Who is awake now.
     Activity activity() {
-        Activity activity(capacity_, pair_capacity());
+        Activity activity(dynamics_settings());
         activity.read_rows(tables().sleep);
         activity.read_pairs(tables().pairs);
+        activity.read_joints(tables().joints);
         return activity;
     }
 
     Dynamics& dynamics() { return *dynamics_; }
     DynamicsState& state() { return state_; }
+    Joint& joint(std::uint32_t row) { return state_.joints[row]; }
     BodyMotion& motion(BodyRow row) { return state_.motion[row]; }
     BodyProperties& properties(BodyRow row) { return state_.properties[row]; }
 

@@ -65,7 +65,9 @@ private:
 };
 
 TEST(SnapshotFuzz, EveryMutationIsRefusedOrCanBeStepped) {
-    const WorldPtr source = make_world(busy_scene(40, 2));
+    WorldDefinition definition = busy_scene(40, 2);
+    add_joints(definition, 1000, {0, 30, 0});
+    const WorldPtr source = make_world(definition);
     std::vector<std::vector<std::byte>> sound;
     for (int tick = 0; tick < 160; ++tick) {
         step_busy(*source);
@@ -74,7 +76,7 @@ TEST(SnapshotFuzz, EveryMutationIsRefusedOrCanBeStepped) {
             source->save(sound.back());
         }
     }
-    const WorldPtr world = make_world(busy_scene(40, 2));
+    const WorldPtr world = make_world(definition);
     int refused = 0;
     int stepped = 0;
     constexpr std::uint64_t kMutations = 2000;

@@ -12,9 +12,9 @@
 namespace lockwind::test {
 namespace {
 
-/// A world in full swing.
+/// A world in full swing, with a joint of each kind.
 WorldPtr busy_world(int ticks = 100) {
-    WorldPtr world = make_world(busy_scene(40, 2));
+    WorldPtr world = make_world(scene_with_joints(40, 2));
     for (int tick = 0; tick < ticks; ++tick) {
         step_busy(*world);
     }

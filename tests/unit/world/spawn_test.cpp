@@ -12,7 +12,7 @@
 namespace lockwind::test {
 namespace {
 
-constexpr std::array<std::uint32_t, section::kCount> kCapacities{1, 1, 32, 32, 32, 200, 200, 4};
+constexpr std::array<std::uint32_t, section::kCount> kCapacities{1, 1, 32, 32, 32, 200, 200, 8, 4};
 
 struct Tables {
     StateArena arena{kWorldSections, kCapacities};
@@ -20,7 +20,8 @@ struct Tables {
                             arena.table<BodyProperties>(section::kBodyProperties),
                             arena.table<BodySleep>(section::kBodySleep),
                             arena.table<Pair>(section::kPair),
-                            arena.table<Manifold>(section::kManifold)};
+                            arena.table<Manifold>(section::kManifold),
+                            arena.table<Joint>(section::kJoint)};
 
     void add(BodyId id) {
         const std::uint32_t row = dynamics.motion.count();

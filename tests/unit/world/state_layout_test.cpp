@@ -27,6 +27,7 @@ TEST(StateLayout, SectionsAreThoseThatTheirNumbersName) {
         {section::kBodySleep, "body_sleep"},
         {section::kPair, "pair"},
         {section::kManifold, "manifold"},
+        {section::kJoint, "joint"},
         {section::kPlayer, "player"},
     };
     ASSERT_EQ(World::schema().size(), std::size(names));
@@ -36,7 +37,9 @@ TEST(StateLayout, SectionsAreThoseThatTheirNumbersName) {
 }
 
 TEST(StateLayout, ABusyWorldHasRowsInEverySection) {
-    const WorldPtr world = make_world(busy_scene(20, 2));
+    WorldDefinition definition = busy_scene(20, 2);
+    add_joints(definition, 1000, {0, 30, 0});
+    const WorldPtr world = make_world(definition);
     for (int tick = 0; tick < 60; ++tick) {
         step_busy(*world);
     }
