@@ -10,6 +10,7 @@ namespace {
 
 constexpr Range kSurfaceSpeed{-100, 100, "m/s"};
 constexpr Range kSize{0.01, 250, "m"};
+constexpr Range kCoordinate{-250, 250, "m"};
 constexpr Range kMass{0.001, 1e6, "kg"};
 constexpr Range kDensity{0.01, 1e5, "kg/m^3"};
 constexpr Range kFriction{0, 4, ""};
@@ -55,6 +56,52 @@ BodyReader::BodyReader(const scene_text::Scene& scene,
                        const LayerReader& layers,
                        WorldDefinition& world)
     : scene_(scene), reader_(reader), layers_(layers), world_(world) {}
+
+void BodyReader::read_hulls() {
+    if (scene_.hull_size() > static_cast<int>(kHullsMax)) {
+        reader_.fail("hull", "is given more than " + std::to_string(kHullsMax) + " times");
+        return;
+    }
+    for (int index = 0; index < scene_.hull_size() && !reader_.failed(); ++index) {
+        read_hull(index);
+    }
+}
+
+void BodyReader::read_hull(int index) {
+    const scene_text::Hull& hull = scene_.hull(index);
+    const FieldReader reader = reader_.nested("hull", index);
+    if (hull.name().empty()) {
+        reader.fail("name", "is missing; bodies name their hull");
+    }
+    for (int former = 0; former < index; ++former) {
+        if (scene_.hull(former).name() == hull.name()) {
+            reader.fail("name", "\"" + hull.name() + "\" is the name of two hulls");
+        }
+    }
+    if (hull.point_size() > static_cast<int>(kHullPointsMax)) {
+        reader.fail("",
+                    "has " + std::to_string(hull.point_size()) + " points; give at most " +
+                        std::to_string(kHullPointsMax));
+        return;
+    }
+    HullDefinition definition;
+    for (int point = 0; point < hull.point_size(); ++point) {
+        const FieldReader components = reader.nested("point", point);
+        definition.points.push_back({components.real("x", 0, kCoordinate),
+                                     components.real("y", 0, kCoordinate),
+                                     components.real("z", 0, kCoordinate)});
+    }
+    if (reader.failed()) {
+        return;
+    }
+    const Result<Hull> made = make_hull(definition.points);
+    if (!made) {
+        reader.fail("", "\"" + hull.name() + "\" " + made.error().message);
+        return;
+    }
+    hull_volumes_.push_back(made.value().volume);
+    world_.hulls.push_back(std::move(definition));
+}
 
 void BodyReader::read_body(int index) {
     const scene_text::Body& body = scene_.body(index);
@@ -210,10 +257,30 @@ void BodyReader::read_shape(const scene_text::Body& body,
             reader.fail("plane", "has no end and cannot move; add `mode: fixed`");
         }
         break;
+    case scene_text::Body::kHull:
+        name_hull(body.hull(), reader, shape);
+        break;
     default:
-        reader.fail("", "has no shape; give sphere, capsule, box or plane");
+        reader.fail("", "has no shape; give sphere, capsule, box, hull or plane");
         break;
     }
+}
+
+void BodyReader::name_hull(const std::string& name,
+                           const FieldReader& reader,
+                           ShapeDefinition& shape) const {
+    std::string names;
+    for (int index = 0; index < scene_.hull_size(); ++index) {
+        if (scene_.hull(index).name() == name) {
+            shape.type = ShapeType::hull;
+            shape.hull = static_cast<std::uint32_t>(index);
+            return;
+        }
+        names += (index == 0 ? "" : ", ") + scene_.hull(index).name();
+    }
+    reader.fail("hull",
+                "\"" + name + "\" is not defined; " +
+                    (names.empty() ? "the scene has no hulls" : "there is: " + names));
 }
 
 void BodyReader::read_matter(const scene_text::Body& body,
@@ -263,7 +330,9 @@ void BodyReader::check_mass(const FieldReader& reader, const BodyDefinition& def
     } else {
         size = {to_length(shape.radius), to_length(shape.half_height), 0};
     }
-    const double mass = to_double(mass_of(shape.type, size.data(), definition.density));
+    const bool is_hull = shape.type == ShapeType::hull;
+    const double mass = to_double(is_hull ? mass_of(hull_volumes_[shape.hull], definition.density)
+                                          : mass_of(shape.type, size.data(), definition.density));
     if (mass < kMass.min || mass > kMass.max) {
         const std::string kilograms = text_of(mass, 3) + " kg";
         const std::string limits = "; a dynamic body weighs 0.001 .. 1000000 kg";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/hull.h"
 #include "scene.pb.h"
 #include "scene/arrangement.h"
 #include "scene/field_reader.h"
@@ -8,6 +9,7 @@
 #include "lockwind/world_definition.h"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace lockwind {
@@ -20,6 +22,8 @@ public:
                const LayerReader& layers,
                WorldDefinition& world);
 
+    /// The scene's hulls, before the bodies that name them.
+    void read_hulls();
     /// body[index]: one body, or as many as its arrangement has.
     void read_body(int index);
     /// One pod for each of `players`.
@@ -34,6 +38,9 @@ private:
     void read_shape(const scene_text::Body& body,
                     const FieldReader& reader,
                     BodyDefinition& definition) const;
+    void read_hull(int index);
+    void
+    name_hull(const std::string& name, const FieldReader& reader, ShapeDefinition& shape) const;
     void read_matter(const scene_text::Body& body,
                      const FieldReader& reader,
                      BodyDefinition& definition) const;
@@ -49,6 +56,7 @@ private:
     const FieldReader& reader_;
     const LayerReader& layers_;
     WorldDefinition& world_;
+    std::vector<Volume> hull_volumes_; // as world_.hulls
 };
 
 } // namespace lockwind

@@ -50,6 +50,8 @@ public:
     /// A field that holds one message, or element `index` of one that holds many.
     FieldReader nested(const std::string& field, int index = -1) const;
 
+    /// Whether anything in the scene was found wrong.
+    bool failed() const { return errors_->any(); }
     /// Reports that `field` (or this message, for "") is wrong.
     void fail(const std::string& field, std::string_view what) const;
 

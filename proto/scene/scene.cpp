@@ -47,6 +47,7 @@ read_scene(std::string_view text, std::string_view file_name, const SceneOptions
     const LayerReader layers(scene, reader);
     world.settings.layer_masks = layers.masks();
     BodyReader bodies(scene, reader, layers, world);
+    bodies.read_hulls();
     JointReader joints(scene, reader, world);
     for (int index = 0; index < scene.body_size() && !errors.any(); ++index) {
         const std::size_t first = world.bodies.size();

@@ -21,6 +21,7 @@ inline constexpr std::array kBenchScenes{
     BenchScene{"spheres_1000", 600, 0},
     BenchScene{"heap_1000", 400, 0},
     BenchScene{"heap_8000", 400, 0},
+    BenchScene{"heap_hulls_1000", 400, 0},
     BenchScene{"arena", 600, 4},
 };
 

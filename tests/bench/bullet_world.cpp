@@ -22,7 +22,20 @@ btTransform to_transform(const BodyDefinition& body) {
     return btTransform(turn.normalized(), to_vector(body.position));
 }
 
-std::unique_ptr<btCollisionShape> make_shape(const ShapeDefinition& shape) {
+/// Without a margin: btConvexHullShape's would be added to the points.
+std::unique_ptr<btCollisionShape> make_hull_shape(const HullDefinition& hull) {
+    auto shape = std::make_unique<btConvexHullShape>();
+    for (const Vec3& point : hull.points) {
+        shape->addPoint(to_vector(point), false);
+    }
+    shape->recalcLocalAabb();
+    shape->optimizeConvexHull();
+    shape->setMargin(0);
+    return shape;
+}
+
+std::unique_ptr<btCollisionShape> make_shape(const ShapeDefinition& shape,
+                                             const std::vector<HullDefinition>& hulls) {
     switch (shape.type) {
     case ShapeType::sphere:
         return std::make_unique<btSphereShape>(to_scalar(shape.radius));
@@ -31,6 +44,8 @@ std::unique_ptr<btCollisionShape> make_shape(const ShapeDefinition& shape) {
                                                 2 * to_scalar(shape.half_height));
     case ShapeType::box:
         return std::make_unique<btBoxShape>(to_vector(shape.half_extents));
+    case ShapeType::hull:
+        return make_hull_shape(hulls[shape.hull]);
     case ShapeType::plane:
         break;
     }
@@ -49,11 +64,11 @@ struct BulletWorld::Impl {
     std::vector<std::unique_ptr<btRigidBody>> bodies;
     btScalar period = 0;
 
-    void add(const BodyDefinition& body);
+    void add(const BodyDefinition& body, const std::vector<HullDefinition>& hulls);
 };
 
-void BulletWorld::Impl::add(const BodyDefinition& body) {
-    shapes.push_back(make_shape(body.shape));
+void BulletWorld::Impl::add(const BodyDefinition& body, const std::vector<HullDefinition>& hulls) {
+    shapes.push_back(make_shape(body.shape, hulls));
     btCollisionShape* shape = shapes.back().get();
     const bool dynamic = body.mode == BodyMode::dynamic;
     const btScalar mass = dynamic ? to_scalar(body.mass) : 0;
@@ -78,7 +93,7 @@ BulletWorld::BulletWorld(const WorldDefinition& definition) : impl_(std::make_un
     impl_->world.getSolverInfo().m_splitImpulse = 1;
     impl_->period = btScalar(1) / static_cast<btScalar>(definition.settings.tick_rate_hz);
     for (const BodyDefinition& body : definition.bodies) {
-        impl_->add(body);
+        impl_->add(body, definition.hulls);
     }
 }
 

@@ -1,6 +1,7 @@
 #include "measured_world.h"
 
 #include "bench_scene.h"
+#include "dynamics/body.h"
 #include "dynamics/contact.h"
 
 #include "lockwind/player_input.h"
@@ -26,29 +27,37 @@ std::uint32_t section_index(std::string_view name) {
 
 using Vector = std::array<double, 3>;
 
-double to_double(Real value) {
-    return static_cast<double>(value.raw()) / static_cast<double>(Real(1).raw());
-}
-
-/// Where a point of the body's frame, Q9.22 m, stands in the world.
-Vector world_point(const BodyView& body, const std::int32_t local[3]) {
+/// Where a point of the body's principal frame, Q9.22 m, stands in the world.
+Vector world_point(const BodyMotion& body, const std::int32_t local[3]) {
     const double scale = static_cast<double>(Length(1).raw());
     const Vector p{local[0] / scale, local[1] / scale, local[2] / scale};
-    const double x = to_double(body.orientation.x);
-    const double y = to_double(body.orientation.y);
-    const double z = to_double(body.orientation.z);
-    const double w = to_double(body.orientation.w);
+    const auto unit = [&](int index) {
+        return body.orientation[index] / static_cast<double>(Unit(1).raw());
+    };
+    const auto place = [&](int axis) {
+        return static_cast<double>(body.position[axis]) / static_cast<double>(Real(1).raw());
+    };
+    const double x = unit(0);
+    const double y = unit(1);
+    const double z = unit(2);
+    const double w = unit(3);
     // p + 2 w (q x p) + 2 q x (q x p)
     const Vector t{2 * (y * p[2] - z * p[1]), 2 * (z * p[0] - x * p[2]), 2 * (x * p[1] - y * p[0])};
-    return {to_double(body.position.x) + p[0] + w * t[0] + y * t[2] - z * t[1],
-            to_double(body.position.y) + p[1] + w * t[1] + z * t[0] - x * t[2],
-            to_double(body.position.z) + p[2] + w * t[2] + x * t[1] - y * t[0]};
+    return {place(0) + p[0] + w * t[0] + y * t[2] - z * t[1],
+            place(1) + p[1] + w * t[1] + z * t[0] - x * t[2],
+            place(2) + p[2] + w * t[2] + x * t[1] - y * t[0]};
 }
 
 /// Now, m: as it was when the manifold was made, and how far its two anchors have drifted since.
-double separation(const World& world, const Manifold& manifold, std::uint32_t point) {
-    const Vector a = world_point(world.body_at(manifold.row_a), manifold.local_a + 3 * point);
-    const Vector b = world_point(world.body_at(manifold.row_b), manifold.local_b + 3 * point);
+double separation(World& world, const Manifold& manifold, std::uint32_t point) {
+    const std::span<const std::byte> bodies = world.section_bytes(section_index("body"));
+    const auto motion = [&](BodyRow row) {
+        BodyMotion body{};
+        std::memcpy(&body, bodies.data() + row * sizeof body, sizeof body);
+        return body;
+    };
+    const Vector a = world_point(motion(manifold.row_a), manifold.local_a + 3 * point);
+    const Vector b = world_point(motion(manifold.row_b), manifold.local_b + 3 * point);
     double drift = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         drift += (b[axis] - a[axis]) * manifold.normal[axis] / static_cast<double>(Unit(1).raw());

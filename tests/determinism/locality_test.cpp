@@ -21,6 +21,22 @@ void add_group(WorldDefinition& scene, BodyId first_id, Real offset) {
         scene.bodies.push_back(index % 2 == 0 ? box(id, place, {0.4, 0.4, 0.4})
                                               : capsule(id, place, 0.3, 0.2));
     }
+    if (scene.hulls.empty()) {
+        scene.hulls.push_back({{{0.5, 0.1, 0},
+                                {-0.5, 0, 0},
+                                {0, 0.4, 0},
+                                {0, -0.4, 0},
+                                {0, 0, 0.5},
+                                {0.1, 0, -0.5},
+                                {0.3, 0.3, 0.3}}});
+    }
+    for (std::uint32_t index = 0; index < 8; ++index) {
+        BodyDefinition rock = box(first_id + 30 + index,
+                                  {offset + Real(index % 4), Real(6) + Real(index / 4), 1},
+                                  {1, 1, 1});
+        rock.shape.type = ShapeType::hull;
+        scene.bodies.push_back(rock);
+    }
     add_pod(scene, first_id + 50, {offset, 0.3, -6});
 }
 

@@ -151,10 +151,17 @@ inline void add_joints(WorldDefinition& definition, BodyId first, const Vec3& pl
     }
 }
 
-/// busy_scene with a joint of each kind above it.
-inline WorldDefinition scene_with_joints(std::uint32_t count, std::uint32_t pods) {
+/// busy_scene with a joint of each kind above it, and a wedge that falls on the pile.
+inline WorldDefinition scene_of_all(std::uint32_t count, std::uint32_t pods) {
     WorldDefinition definition = busy_scene(count, pods);
     add_joints(definition, 10000, {0, 30, 0});
+    definition.hulls = {
+        {{{-0.5, 0, -0.5}, {0.5, 0, -0.5}, {0.5, 0, 0.5}, {-0.5, 0, 0.5}, {0, 0.8, 0}}}};
+    BodyDefinition wedge;
+    wedge.id = 20000;
+    wedge.shape.type = ShapeType::hull;
+    wedge.position = {0, 3, 0};
+    definition.bodies.push_back(wedge);
     return definition;
 }
 

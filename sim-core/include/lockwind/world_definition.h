@@ -33,9 +33,9 @@ struct BodyDefinition {
     BodyId id = 0; // 1 .. 2^32 - 1, unique
     BodyMode mode = BodyMode::dynamic;
     ShapeDefinition shape;
-    Vec3 position;         // m
+    Vec3 position;         // m, of the shape's origin
     RealQuat orientation;  // x y z w; normalised on creation, must not be 0
-    Vec3 linear_velocity;  // m/s
+    Vec3 linear_velocity;  // m/s, of the centre of mass
     Vec3 angular_velocity; // rad/s
     Real density = 1000.0; // kg/m^3; used where mass is 0
     Real mass = 0.0;       // kg; overrides density where > 0
@@ -149,6 +149,7 @@ struct WorldSettings {
 struct WorldDefinition {
     std::string name;
     WorldSettings settings;
+    std::vector<HullDefinition> hulls; // what ShapeDefinition::hull counts
     std::vector<BodyDefinition> bodies;
     std::vector<JointDefinition> joints;
     std::vector<PodDefinition> pods; // slot s controls pods[s]

@@ -9,7 +9,9 @@
 
 namespace lockwind {
 
-/// What moves: row of the arena's section "body", sorted by id. Raw fixed-point values.
+/// What moves: row of the arena's section "body", sorted by id. Raw fixed-point values. A body's
+/// frame is that of its principal axes about its centre of mass; for a hull it is not the one that
+/// the definition has (see Hull), for all others it is.
 struct BodyMotion {
     std::uint64_t id;
     std::int64_t position[3];        // Q31.32 m
@@ -27,7 +29,7 @@ static_assert(sizeof(BodyMotion) == 112);
 struct BodyProperties {
     std::int64_t inverse_mass;    // Q24.40 1/kg; 0 unless dynamic
     std::int32_t size[3];         // Q9.22 m: box half extents; sphere radius; capsule radius,
-                                  // half height of the segment; plane 0
+                                  // half height of the segment; plane and hull 0
     std::int32_t bounding_radius; // Q9.22 m; 0 for a plane
     std::int32_t gyration_radius; // Q9.22 m: sqrt(k_min k_max); see solver.md 4
     std::int32_t inverse_gyration_radius; // Q7.24 1/m
@@ -46,7 +48,8 @@ struct BodyProperties {
     std::uint8_t zero;
     std::uint32_t spawn_count;  // bodies this one has spawned
     std::uint32_t despawn_tick; // low 32 bits of the tick that destroys it; 0 for never
-    std::uint32_t zero_end;     // int64 is aligned to 8 on some machines
+    std::uint16_t hull;         // index into the world's ShapeLibrary; 0 unless a hull
+    std::uint16_t zero_end;     // int64 is aligned to 8 on some machines
 };
 static_assert(sizeof(BodyProperties) == 88);
 
@@ -92,6 +95,7 @@ inline constexpr std::array kBodyPropertiesFields{
     LOCKWIND_FIELD(BodyProperties, zero, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, spawn_count, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, despawn_tick, 0, "tick", ""),
+    LOCKWIND_FIELD(BodyProperties, hull, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, zero_end, 0, "", ""),
 };
 

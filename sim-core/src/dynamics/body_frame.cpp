@@ -10,21 +10,18 @@ namespace lockwind {
 
 namespace {
 
-bool is_current(const BodyFrame& frame, const BodyMotion& motion, const BodyProperties& body) {
-    if (frame.shape.rotation == nullptr ||
-        static_cast<std::uint8_t>(frame.shape.type) != body.shape ||
-        !std::equal(body.size, body.size + 3, frame.shape.size)) {
+bool is_current(const BodyFrame& frame, const ShapeInstance& shape, const BodyMotion& motion) {
+    if (frame.shape.rotation == nullptr || frame.shape.type != shape.type ||
+        frame.shape.hull != shape.hull ||
+        !std::equal(shape.size, shape.size + 3, frame.shape.size)) {
         return false;
     }
     return frame.shape.type == ShapeType::sphere ||
            std::equal(motion.orientation, motion.orientation + 4, frame.orientation);
 }
 
-void make_frame(BodyFrame& frame, const BodyMotion& motion, const BodyProperties& body) {
-    const bool known = body.shape <= static_cast<std::uint8_t>(ShapeType::plane);
-    frame.shape.type = known ? static_cast<ShapeType>(body.shape) : ShapeType::sphere;
-    frame.shape.rotation = frame.rotation;
-    std::copy(body.size, body.size + 3, frame.shape.size);
+void make_frame(BodyFrame& frame, const ShapeInstance& shape, const BodyMotion& motion) {
+    frame.shape = shape;
     std::copy(motion.orientation, motion.orientation + 4, frame.orientation);
     if (frame.shape.type == ShapeType::sphere) {
         std::copy(kIdentityRotation, kIdentityRotation + 9, frame.rotation);
@@ -38,14 +35,31 @@ void make_frame(BodyFrame& frame, const BodyMotion& motion, const BodyProperties
     }
 }
 
+/// `rotation` is the frame's own.
+ShapeInstance
+shape_of_row(const BodyProperties& body, const ShapeLibrary* shapes, const std::int32_t* rotation) {
+    ShapeInstance shape{ShapeType::sphere, {body.size[0], body.size[1], body.size[2]}, rotation};
+    if (body.shape < static_cast<std::uint8_t>(ShapeType::hull)) {
+        shape.type = static_cast<ShapeType>(body.shape);
+    } else if (body.shape == static_cast<std::uint8_t>(ShapeType::hull) && shapes != nullptr &&
+               body.hull < shapes->hull_count()) {
+        shape.type = ShapeType::hull;
+        shape.hull = &shapes->hull(body.hull);
+    }
+    return shape;
+}
+
 } // namespace
 
-BodyFrames::BodyFrames(std::uint32_t capacity) : frames_(capacity) {}
+BodyFrames::BodyFrames(std::uint32_t capacity, const ShapeLibrary* shapes)
+    : frames_(capacity), shapes_(shapes) {}
 
 void BodyFrames::refresh(const DynamicsTables& tables, std::span<const BodyRow> rows) {
     for (const BodyRow row : rows) {
-        if (!is_current(frames_[row], tables.motion[row], tables.properties[row])) {
-            make_frame(frames_[row], tables.motion[row], tables.properties[row]);
+        BodyFrame& frame = frames_[row];
+        const ShapeInstance shape = shape_of_row(tables.properties[row], shapes_, frame.rotation);
+        if (!is_current(frame, shape, tables.motion[row])) {
+            make_frame(frame, shape, tables.motion[row]);
         }
     }
 }

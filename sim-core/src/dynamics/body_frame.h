@@ -2,6 +2,7 @@
 
 #include "dynamics/dynamics.h"
 #include "geometry/shape_instance.h"
+#include "geometry/shape_library.h"
 
 #include <cstdint>
 #include <span>
@@ -19,16 +20,19 @@ struct BodyFrame {
     ShapeInstance shape;          // `rotation` points into this frame
 };
 
-/// Frames by row, recomputed where orientation, size or shape differ from the key.
+/// Frames by row, recomputed where orientation, size or shape differ from the key. A shape that
+/// there is not (in damaged tables) is a sphere.
 class BodyFrames {
 public:
-    explicit BodyFrames(std::uint32_t capacity);
+    /// `shapes` must outlive this; none: no body is a hull.
+    explicit BodyFrames(std::uint32_t capacity, const ShapeLibrary* shapes = nullptr);
     void refresh(const DynamicsTables& tables, std::span<const BodyRow> rows);
     void drop();
     const BodyFrame& operator[](BodyRow row) const { return frames_[row]; }
 
 private:
     std::vector<BodyFrame> frames_;
+    const ShapeLibrary* shapes_;
 };
 
 /// From centre A to centre B, Q9.22 m; of a plane, from or to the nearest point.

@@ -16,7 +16,7 @@ struct Pair {
     BodyRow row_b;
     std::uint32_t manifold;   // row of section "manifold"; kNoIndex unless touching
     std::uint32_t stamp;      // tick when the narrow phase last looked at it; 0 for never
-    std::uint8_t axis;        // box-box cache, see ManifoldCache
+    std::uint8_t axis;        // of boxes and hulls, see ManifoldCache
     std::uint8_t point_count; // 0 .. 4; 0 unless touching
     std::uint8_t zero[2];
 };

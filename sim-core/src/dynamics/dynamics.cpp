@@ -18,10 +18,10 @@
 namespace lockwind {
 
 struct Dynamics::Impl {
-    Impl(const DynamicsSettings& settings, Simd simd)
-        : activity(settings), frames(settings.body_capacity), slots(settings.manifold_capacity),
-          broad(settings), joined(settings.joint_capacity), narrow(settings.body_capacity),
-          solver(settings, contact_kernels(simd)), sleep(settings) {
+    Impl(const DynamicsSettings& settings, const ShapeLibrary* shapes, Simd simd)
+        : activity(settings), frames(settings.body_capacity, shapes),
+          slots(settings.manifold_capacity), broad(settings), joined(settings.joint_capacity),
+          narrow(settings.body_capacity), solver(settings, contact_kernels(simd)), sleep(settings) {
         // A pair that goes and one that comes both change in a tick.
         changes.reserve(2 * std::size_t{settings.pair_capacity});
     }
@@ -48,8 +48,8 @@ struct Dynamics::Impl {
     std::vector<ContactChange> changes;
 };
 
-Dynamics::Dynamics(const DynamicsSettings& settings, Simd simd)
-    : impl_(std::make_unique<Impl>(settings, simd)) {}
+Dynamics::Dynamics(const DynamicsSettings& settings, const ShapeLibrary* shapes, Simd simd)
+    : impl_(std::make_unique<Impl>(settings, shapes, simd)) {}
 
 Dynamics::~Dynamics() = default;
 

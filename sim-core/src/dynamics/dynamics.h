@@ -4,6 +4,7 @@
 #include "dynamics/body.h"
 #include "dynamics/contact.h"
 #include "dynamics/joint.h"
+#include "geometry/shape_library.h"
 
 #include "lockwind/simd.h"
 #include "lockwind/vector.h"
@@ -73,8 +74,10 @@ struct SleepChange {
 /// later tick reads, nothing allocated after construction.
 class Dynamics {
 public:
-    /// `simd` is available, see simd.h.
-    explicit Dynamics(const DynamicsSettings& settings, Simd simd = best_simd());
+    /// `shapes` must outlive this; none: no body is a hull. `simd` is available, see simd.h.
+    explicit Dynamics(const DynamicsSettings& settings,
+                      const ShapeLibrary* shapes = nullptr,
+                      Simd simd = best_simd());
     ~Dynamics();
     Dynamics(const Dynamics&) = delete;
     Dynamics& operator=(const Dynamics&) = delete;

@@ -21,9 +21,6 @@ using GyrationRadius = Length;                   // Q9.22
 using InverseGyration = Fixed<std::int32_t, 24>; // Q7.24
 using InverseInertia = Fixed<std::int32_t, 26>;  // Q5.26
 
-/// A fixed body's surface is at most this far from its origin, m: with kMovingRadiusMax and the fat
-/// bounds' 1.1 m it stays within Q9.22.
-constexpr Real kFixedRadiusMax = 434;
 constexpr Real kDensityMax = 1000000; // kg/m^3
 /// The gyration radius is no smaller, so that its inverse fits Q7.24: 1/127 m, rounded up. It only
 /// scales the stored angular velocity and inverse inertia, so that a smaller body is as exact.
@@ -32,7 +29,10 @@ constexpr std::int32_t kGyrationRadiusMin = 33027;
 /// coefficients are below 8 (Q3.28).
 constexpr std::int64_t kLeverageMax = 62; // in eighths: 7.75
 
-void check_shape(const ShapeDefinition& shape, BodyMode mode, DefinitionChecker& checker) {
+void check_shape(const ShapeDefinition& shape,
+                 BodyMode mode,
+                 const ShapeLibrary& shapes,
+                 DefinitionChecker& checker) {
     // Compared as it will be stored, so that a stored size is always a valid one.
     const auto size = [&](const char* field, Real value) {
         const auto stored = convert_saturated<Length>(value);
@@ -56,6 +56,13 @@ void check_shape(const ShapeDefinition& shape, BodyMode mode, DefinitionChecker&
     case ShapeType::plane:
         checker.require(
             mode == BodyMode::fixed, "shape.type", "is a plane; only a fixed body may be one");
+        return;
+    case ShapeType::hull:
+        if (shape.hull >= shapes.hull_count()) {
+            checker.fail("shape.hull",
+                         "is " + std::to_string(shape.hull) + "; there are " +
+                             std::to_string(shapes.hull_count()) + " hulls");
+        }
         return;
     }
     checker.fail("shape.type", "is unknown");
@@ -87,6 +94,7 @@ void check_motion(const BodyDefinition& definition,
 
 void check_definition(const BodyDefinition& definition,
                       const WorldSettings& settings,
+                      const ShapeLibrary& shapes,
                       DefinitionChecker& checker) {
     constexpr BodyId kSceneIdMax = 0xffffffffU;
     checker.require(definition.id >= 1 && definition.id <= kSceneIdMax,
@@ -96,7 +104,7 @@ void check_definition(const BodyDefinition& definition,
                         definition.mode == BodyMode::dynamic,
                     "mode",
                     "is unknown");
-    check_shape(definition.shape, definition.mode, checker);
+    check_shape(definition.shape, definition.mode, shapes, checker);
     check_motion(definition, settings, checker);
     checker.require(
         definition.layer < kLayerCount, "layer", "is out of range; it must be within 0 .. 31");
@@ -111,7 +119,12 @@ void check_definition(const BodyDefinition& definition,
     checker.range("restitution", definition.restitution, 0, kRestitutionMax, "");
 }
 
-void fill_size(const ShapeDefinition& shape, BodyProperties& properties) {
+/// Null unless the shape is a hull.
+const Hull* hull_of(const ShapeDefinition& shape, const ShapeLibrary& shapes) {
+    return shape.type == ShapeType::hull ? &shapes.hull(shape.hull) : nullptr;
+}
+
+void fill_size(const ShapeDefinition& shape, const Hull* hull, BodyProperties& properties) {
     const auto set = [&](int index, Real value) {
         properties.size[index] = convert<Length>(value).raw();
     };
@@ -130,6 +143,10 @@ void fill_size(const ShapeDefinition& shape, BodyProperties& properties) {
         break;
     case ShapeType::plane:
         break;
+    case ShapeType::hull:
+        properties.hull = static_cast<std::uint16_t>(shape.hull);
+        properties.bounding_radius = hull->bounding_radius;
+        return;
     }
     properties.bounding_radius = bounding_radius(shape.type, properties.size);
 }
@@ -146,7 +163,13 @@ void set_gyration_radius(std::int64_t radius, BodyProperties& properties) {
 }
 
 /// Distance from the local axis to the farthest surface point.
-std::int64_t arm_about(const ShapeDefinition& shape, const BodyProperties& properties, int axis) {
+std::int64_t arm_about(const ShapeDefinition& shape,
+                       const Hull* hull,
+                       const BodyProperties& properties,
+                       int axis) {
+    if (hull != nullptr) {
+        return hull->arm[axis];
+    }
     const std::int32_t* size = properties.size;
     if (shape.type == ShapeType::box) {
         const std::int32_t across[3] = {
@@ -158,9 +181,11 @@ std::int64_t arm_about(const ShapeDefinition& shape, const BodyProperties& prope
 
 /// rho = (k_min k_max)^(1/4), rho^2 / k_i, with k = I / m.
 void fill_inertia(const ShapeDefinition& shape,
+                  const Hull* hull,
                   BodyProperties& properties,
                   DefinitionChecker& checker) {
-    const UnitInertia inertia = unit_inertia(shape.type, properties.size);
+    const UnitInertia inertia =
+        hull != nullptr ? hull->inertia : unit_inertia(shape.type, properties.size);
     const auto moment = [&](int axis) {
         return static_cast<std::uint64_t>(inertia.moment[axis].raw());
     };
@@ -182,7 +207,7 @@ void fill_inertia(const ShapeDefinition& shape,
     for (int axis = 0; axis < 3; ++axis) {
         const auto k = static_cast<std::int64_t>(moment(axis));
         const std::int64_t ratio = (multiply_divide(rho * rho, kTwice, k) + 1) >> 1;
-        const std::int64_t arm = arm_about(shape, properties, axis) + radius / 24 + kOff;
+        const std::int64_t arm = arm_about(shape, hull, properties, axis) + radius / 24 + kOff;
         bearable = bearable && is_bearable(arm, rho, k) &&
                    ratio <= std::int64_t{InverseInertia::highest().raw()};
         properties.inverse_inertia[axis] = raw_saturate<std::int32_t>(ratio);
@@ -191,12 +216,16 @@ void fill_inertia(const ShapeDefinition& shape,
 }
 
 void fill_mass(const BodyDefinition& definition,
+               const Hull* hull,
                BodyProperties& properties,
                DefinitionChecker& checker) {
     const bool by_density = definition.mass == 0;
-    const Real mass = by_density
-                          ? mass_of(definition.shape.type, properties.size, definition.density)
-                          : definition.mass;
+    Real mass = definition.mass;
+    if (by_density) {
+        mass = hull != nullptr
+                   ? mass_of(hull->volume, definition.density)
+                   : mass_of(definition.shape.type, properties.size, definition.density);
+    }
     if (mass < kBodyMassMin || mass > kBodyMassMax) {
         checker.fail(by_density ? "density" : "mass",
                      "gives " + text_of(mass) + " kg; a mass must be within " +
@@ -210,6 +239,7 @@ void fill_mass(const BodyDefinition& definition,
 }
 
 void fill_build(const BodyDefinition& definition,
+                const Hull* hull,
                 BodyProperties& properties,
                 DefinitionChecker& checker) {
     const auto radius = convert<Real>(Length::from_raw(properties.bounding_radius));
@@ -228,8 +258,8 @@ void fill_build(const BodyDefinition& definition,
         set_gyration_radius(properties.bounding_radius, properties);
         return;
     }
-    fill_inertia(definition.shape, properties, checker);
-    fill_mass(definition, properties, checker);
+    fill_inertia(definition.shape, hull, properties, checker);
+    fill_mass(definition, hull, properties, checker);
 }
 
 void fill_orientation(const RealQuat& orientation, BodyMotion& motion) {
@@ -254,6 +284,39 @@ void fill_orientation(const RealQuat& orientation, BodyMotion& motion) {
         motion.orientation[index] =
             static_cast<std::int32_t>((multiply_divide(scaled[index], kTwice, length) + 1) >> 1);
     }
+}
+
+/// Turns a hull's principal axes into the frame of its points.
+RealQuat principal_turn(const Hull& hull) {
+    const auto unit = [&](int index) {
+        return convert<Real>(Unit::from_raw(hull.orientation[index]));
+    };
+    return {unit(0), unit(1), unit(2), unit(3)};
+}
+
+Vec3 principal_centre(const Hull& hull) {
+    const auto length = [&](int index) {
+        return convert<Real>(Length::from_raw(hull.centre[index]));
+    };
+    return {length(0), length(1), length(2)};
+}
+
+void fill_place(const BodyDefinition& definition,
+                const Hull* hull,
+                BodyMotion& motion,
+                DefinitionChecker& checker) {
+    RealQuat orientation = definition.orientation;
+    Vec3 position = definition.position;
+    if (hull != nullptr) {
+        const RealQuat given = normalized(orientation);
+        orientation = given * principal_turn(*hull);
+        position += rotate(given, principal_centre(*hull));
+        checker.vector_range("position of the centre of mass", position, kBodyPositionMax, " m");
+    }
+    motion.position[0] = position.x.raw();
+    motion.position[1] = position.y.raw();
+    motion.position[2] = position.z.raw();
+    fill_orientation(orientation, motion);
 }
 
 void fill_velocities(const BodyDefinition& definition,
@@ -284,20 +347,24 @@ void fill_velocities(const BodyDefinition& definition,
 
 Status make_body(const BodyDefinition& definition,
                  const WorldSettings& settings,
+                 const ShapeLibrary& shapes,
                  BodyMotion& motion,
                  BodyProperties& properties) {
     DefinitionChecker checker("body", definition.id);
-    check_definition(definition, settings, checker);
+    check_definition(definition, settings, shapes, checker);
     if (checker.failed()) {
         return checker.error();
     }
+    const Hull* hull = hull_of(definition.shape, shapes);
     BodyMotion new_motion{};
     BodyProperties new_properties{};
     new_properties.mode = static_cast<std::uint8_t>(definition.mode);
     new_properties.shape = static_cast<std::uint8_t>(definition.shape.type);
     new_properties.can_sleep = definition.can_sleep ? 1 : 0;
     new_properties.sensor = definition.sensor ? 1 : 0;
-    const Vec3& surface = definition.surface_velocity;
+    const Vec3 surface = hull != nullptr
+                             ? rotate(conjugate(principal_turn(*hull)), definition.surface_velocity)
+                             : definition.surface_velocity;
     new_properties.surface_velocity[0] = convert<Velocity>(surface.x).raw();
     new_properties.surface_velocity[1] = convert<Velocity>(surface.y).raw();
     new_properties.surface_velocity[2] = convert<Velocity>(surface.z).raw();
@@ -307,14 +374,11 @@ Status make_body(const BodyDefinition& definition,
     new_properties.restitution_rule = static_cast<std::uint8_t>(definition.restitution_rule);
     new_properties.friction = convert<Coefficient>(definition.friction).raw();
     new_properties.restitution = convert<Coefficient>(definition.restitution).raw();
-    fill_size(definition.shape, new_properties);
-    fill_build(definition, new_properties, checker);
+    fill_size(definition.shape, hull, new_properties);
+    fill_build(definition, hull, new_properties, checker);
 
     new_motion.id = definition.id;
-    new_motion.position[0] = definition.position.x.raw();
-    new_motion.position[1] = definition.position.y.raw();
-    new_motion.position[2] = definition.position.z.raw();
-    fill_orientation(definition.orientation, new_motion);
+    fill_place(definition, hull, new_motion, checker);
     fill_velocities(definition, new_properties, new_motion, checker);
     for (int axis = 0; axis < 3; ++axis) {
         new_motion.fat_bounds[axis] = 1;
@@ -327,7 +391,8 @@ Status make_body(const BodyDefinition& definition,
     return Success{};
 }
 
-BodyReading read_body(const BodyMotion& motion, const BodyProperties& properties) {
+BodyReading
+read_body(const BodyMotion& motion, const BodyProperties& properties, const ShapeLibrary& shapes) {
     BodyReading reading{};
     reading.mode = static_cast<BodyMode>(properties.mode);
     reading.shape.type = static_cast<ShapeType>(properties.shape);
@@ -336,6 +401,8 @@ BodyReading read_body(const BodyMotion& motion, const BodyProperties& properties
     };
     if (reading.shape.type == ShapeType::box) {
         reading.shape.half_extents = {size(0), size(1), size(2)};
+    } else if (reading.shape.type == ShapeType::hull) {
+        reading.shape.hull = properties.hull;
     } else if (reading.shape.type != ShapeType::plane) {
         reading.shape.radius = size(0);
     }
@@ -349,6 +416,12 @@ BodyReading read_body(const BodyMotion& motion, const BodyProperties& properties
     reading.position = {Real::from_raw(motion.position[0]),
                         Real::from_raw(motion.position[1]),
                         Real::from_raw(motion.position[2])};
+    if (reading.shape.type == ShapeType::hull) {
+        reading.orientation =
+            normalized(reading.orientation * turn_to_given_frame(properties, shapes));
+        reading.position -=
+            rotate(reading.orientation, principal_centre(shapes.hull(properties.hull)));
+    }
     const auto linear = [&](int index) {
         return convert<Real>(Velocity::from_raw(motion.linear_velocity[index]));
     };
@@ -370,10 +443,30 @@ BodyReading read_body(const BodyMotion& motion, const BodyProperties& properties
     return reading;
 }
 
-ShapeInstance shape_of(const BodyProperties& properties, const std::int32_t* rotation) {
-    return {static_cast<ShapeType>(properties.shape),
+ShapeInstance shape_of(const BodyProperties& properties,
+                       const ShapeLibrary& shapes,
+                       const std::int32_t* rotation) {
+    const auto type = static_cast<ShapeType>(properties.shape);
+    return {type,
             {properties.size[0], properties.size[1], properties.size[2]},
-            rotation};
+            rotation,
+            type == ShapeType::hull ? &shapes.hull(properties.hull) : nullptr};
+}
+
+Vec3 to_principal_frame(const Vec3& point,
+                        const BodyProperties& properties,
+                        const ShapeLibrary& shapes) {
+    if (properties.shape != static_cast<std::uint8_t>(ShapeType::hull)) {
+        return point;
+    }
+    const Hull& hull = shapes.hull(properties.hull);
+    return rotate(conjugate(principal_turn(hull)), point - principal_centre(hull));
+}
+
+RealQuat turn_to_given_frame(const BodyProperties& properties, const ShapeLibrary& shapes) {
+    return properties.shape == static_cast<std::uint8_t>(ShapeType::hull)
+               ? conjugate(principal_turn(shapes.hull(properties.hull)))
+               : RealQuat{};
 }
 
 } // namespace lockwind

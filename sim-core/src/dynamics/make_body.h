@@ -2,6 +2,7 @@
 
 #include "dynamics/body.h"
 #include "geometry/shape_instance.h"
+#include "geometry/shape_library.h"
 
 #include "lockwind/result.h"
 #include "lockwind/world_definition.h"
@@ -22,10 +23,12 @@ inline constexpr Real kRestitutionMax = 1.0;
 /// it.
 Status make_body(const BodyDefinition& definition,
                  const WorldSettings& settings,
+                 const ShapeLibrary& shapes,
                  BodyMotion& motion,
                  BodyProperties& properties);
 
-/// Rows read back at the API's scale.
+/// Rows read back at the API's scale, in the frame of the definition: of a hull, the one that its
+/// points were given in.
 struct BodyReading {
     BodyMode mode;
     ShapeDefinition shape;
@@ -35,9 +38,21 @@ struct BodyReading {
     Vec3 angular_velocity; // rad/s
     Real mass;             // kg; 0 unless dynamic
 };
-BodyReading read_body(const BodyMotion& motion, const BodyProperties& properties);
+BodyReading
+read_body(const BodyMotion& motion, const BodyProperties& properties, const ShapeLibrary& shapes);
 
 /// The shape of a row, turned by `rotation` (identity for a sphere).
-ShapeInstance shape_of(const BodyProperties& properties, const std::int32_t* rotation);
+ShapeInstance shape_of(const BodyProperties& properties,
+                       const ShapeLibrary& shapes,
+                       const std::int32_t* rotation);
+
+/// A point of the definition's frame, m, from the centre of mass along the principal axes.
+Vec3 to_principal_frame(const Vec3& point,
+                        const BodyProperties& properties,
+                        const ShapeLibrary& shapes);
+
+/// The turn from a body's principal axes to the frame of its definition: the identity but for
+/// hulls.
+RealQuat turn_to_given_frame(const BodyProperties& properties, const ShapeLibrary& shapes);
 
 } // namespace lockwind

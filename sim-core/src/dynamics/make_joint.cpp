@@ -276,6 +276,7 @@ const char* bad_joint_numbers(const Joint& joint) {
 
 Status make_joint(const JointDefinition& definition,
                   const DynamicsTables& tables,
+                  const ShapeLibrary& shapes,
                   BodyRow row_a,
                   BodyRow row_b,
                   Joint& joint) {
@@ -295,15 +296,35 @@ Status make_joint(const JointDefinition& definition,
     made.target[0] = definition.target.x.raw();
     made.target[1] = definition.target.y.raw();
     made.target[2] = definition.target.z.raw();
-    fill_anchor(definition.anchor_a, made.anchor_a);
-    fill_anchor(definition.anchor_b, made.anchor_b);
-    fill_frame(definition.frame_a, made.frame_a);
-    fill_frame(definition.frame_b, made.frame_b);
     fill_drives(definition, made);
-    const char* const far = "is more than 1000 gyration radii of its body away from its centre";
-    const bool is_grab = definition.kind == JointKind::grab;
-    checker.require(is_grab || !is_long(tables.properties[row_a], made.anchor_a), "anchor_a", far);
-    checker.require(!is_long(tables.properties[row_b], made.anchor_b), "anchor_b", far);
+    const auto fill_side = [&](BodyRow row,
+                               const char* name,
+                               const Vec3& anchor,
+                               const RealQuat& frame,
+                               std::int32_t made_anchor[3],
+                               std::int32_t made_frame[4]) {
+        const BodyProperties& body = tables.properties[row];
+        const Vec3 arm = to_principal_frame(anchor, body, shapes);
+        checker.vector_range(name, arm, kJointAnchorMax, " m");
+        fill_anchor(arm, made_anchor);
+        fill_frame(turn_to_given_frame(body, shapes) * frame, made_frame);
+        checker.require(!is_long(body, made_anchor),
+                        name,
+                        "is more than 1000 gyration radii of its body away from its centre");
+    };
+    if (definition.kind == JointKind::grab) {
+        fill_anchor(definition.anchor_a, made.anchor_a);
+        fill_frame(definition.frame_a, made.frame_a);
+    } else {
+        fill_side(row_a,
+                  "anchor_a",
+                  definition.anchor_a,
+                  definition.frame_a,
+                  made.anchor_a,
+                  made.frame_a);
+    }
+    fill_side(
+        row_b, "anchor_b", definition.anchor_b, definition.frame_b, made.anchor_b, made.frame_b);
     if (checker.failed()) {
         return checker.error();
     }

@@ -24,6 +24,7 @@ inline constexpr Real kJointDampingMax = 100.0;
 /// Error names the joint, the field and what would be right; the row is then untouched.
 Status make_joint(const JointDefinition& definition,
                   const DynamicsTables& tables,
+                  const ShapeLibrary& shapes,
                   BodyRow row_a,
                   BodyRow row_b,
                   Joint& joint);

@@ -19,7 +19,7 @@ constexpr auto kFixed = static_cast<std::uint8_t>(BodyMode::fixed);
 constexpr std::int64_t kDriftMax = 209715; // 50 mm, Q9.22: a manifold bears this much sliding
 
 bool is_flat(ShapeType type) {
-    return type == ShapeType::box || type == ShapeType::plane;
+    return type == ShapeType::box || type == ShapeType::plane || type == ShapeType::hull;
 }
 
 void cross_unit(const std::int32_t a[3], const std::int32_t b[3], std::int32_t out[3]) {

@@ -1,9 +1,12 @@
 #include "geometry/bounds.h"
 
 #include "geometry/fixed_geometry.h"
+#include "geometry/hull.h"
 
 #include "lockwind/assert.h"
 #include "lockwind/integer.h"
+
+#include <algorithm>
 
 namespace lockwind {
 
@@ -16,10 +19,29 @@ std::int32_t round_up(std::int64_t sum) {
     return raw_narrow<std::int32_t>((sum + kUnitOne - 1) >> kUnitFraction) + kMatrixError;
 }
 
+void hull_half_extents(const ShapeInstance& shape, std::int32_t half_extents[3]) {
+    const Hull& hull = *shape.hull;
+    std::int64_t farthest[3] = {0, 0, 0};
+    for (std::uint32_t vertex = 0; vertex < hull.vertex_count; ++vertex) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const std::int64_t place =
+                dot_wide(shape.rotation + 3 * axis, hull.vertices[vertex].place);
+            farthest[axis] = std::max(farthest[axis], magnitude(place));
+        }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        half_extents[axis] = round_up(farthest[axis]);
+    }
+}
+
 } // namespace
 
 void bounds_half_extents(const ShapeInstance& shape, std::int32_t half_extents[3]) {
     LOCKWIND_ASSERT(is_bounded(shape.type));
+    if (shape.type == ShapeType::hull) {
+        hull_half_extents(shape, half_extents);
+        return;
+    }
     const std::int32_t* size = shape.size;
     for (int axis = 0; axis < 3; ++axis) {
         if (shape.type == ShapeType::sphere) {
@@ -50,7 +72,8 @@ std::int32_t bounding_radius(ShapeType type, const std::int32_t size[3]) {
         return static_cast<std::int32_t>(root + (root * root < square ? 1U : 0U));
     }
     case ShapeType::plane:
-        return 0;
+    case ShapeType::hull:
+        break;
     }
     return 0;
 }

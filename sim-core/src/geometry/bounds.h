@@ -11,10 +11,12 @@ constexpr bool is_bounded(ShapeType type) {
     return type != ShapeType::plane;
 }
 
-/// Half extents of the tight axis-aligned box about a bounded shape, Q9.22 m, rounded up.
+/// Half extents of the tight axis-aligned box about a bounded shape, Q9.22 m, rounded up; of a
+/// hull, the tightest box that has the hull's centre for its own.
 void bounds_half_extents(const ShapeInstance& shape, std::int32_t half_extents[3]);
 
-/// Distance of the farthest surface point from the centre, Q9.22 m, rounded up; 0 for a plane.
+/// Distance of the farthest surface point from the centre, Q9.22 m, rounded up; 0 for a plane. A
+/// hull holds its own.
 std::int32_t bounding_radius(ShapeType type, const std::int32_t size[3]);
 
 } // namespace lockwind

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geometry/manifold.h"
+#include "geometry/face_polygon.h"
 
 #include <cstdint>
 
@@ -15,21 +15,11 @@ struct IncidentBox {
     std::int32_t companion_separation; // Q9.22, see Midway
 };
 
-/// A corner of the incident face's part above the reference face. Its feature is the pair of edges
-/// that meet in it: 0 .. 3 edges of the incident face, 4 .. 7 sides of the reference face.
-struct FacePoint {
-    std::int64_t place[2];   // along the reference face's axes u = axis + 1, v = axis + 2; Q9.22
-    std::int64_t separation; // above the reference face
-    std::uint8_t edge_in;
-    std::uint8_t edge_out;
-};
-
-struct FaceContact {
-    FacePoint points[kManifoldPointsMax];
-    int count = 0;
-    bool positive = true;            // which of the axis' two faces
-    std::uint32_t feature = 0;       // reference and incident face, 6 bits
-    std::int32_t min_separation = 0; // of all corners before the reduction to four
+/// Edges of the corners (FacePoint): 0 .. 3 of the incident face, 4 .. 7 sides of the reference
+/// face.
+struct FaceContact : FacePoints {
+    bool positive = true;      // which of the axis' two faces
+    std::uint32_t feature = 0; // reference and incident face, 6 bits
 };
 
 /// Clips the incident face against the sides of the reference box's face on `axis`. Leaves count 0

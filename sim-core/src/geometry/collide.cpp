@@ -15,7 +15,7 @@ constexpr std::int64_t kDeltaMax = std::int64_t{511} << kLengthFraction;
 /// 400 m, Q31.32: leaves room for the other body's points.
 constexpr std::int64_t kHeightMax = std::int64_t{400} << 32;
 
-constexpr int kTypes = 4;
+constexpr int kTypes = 5;
 
 constexpr int pair_key(ShapeType first, ShapeType second) {
     return static_cast<int>(first) * kTypes + static_cast<int>(second);
@@ -46,6 +46,15 @@ void collide_ordered(const ShapeInstance& first,
         return collide_plane_capsule(first, second, delta, out);
     case pair_key(ShapeType::plane, ShapeType::box):
         return collide_plane_box(first, second, delta, out);
+    case pair_key(ShapeType::hull, ShapeType::sphere):
+        return collide_hull_sphere(first, second, delta, out);
+    case pair_key(ShapeType::hull, ShapeType::capsule):
+        return collide_hull_capsule(first, second, delta, out);
+    case pair_key(ShapeType::hull, ShapeType::plane):
+        return collide_hull_plane(first, second, delta, out);
+    case pair_key(ShapeType::hull, ShapeType::box):
+    case pair_key(ShapeType::hull, ShapeType::hull):
+        return collide_polytopes(first, second, delta, cache, out);
     default:
         return; // two planes do not meet
     }

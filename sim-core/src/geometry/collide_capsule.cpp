@@ -1,4 +1,5 @@
 #include "geometry/pair_kernels.h"
+#include "geometry/segments.h"
 
 #include <initializer_list>
 
@@ -11,27 +12,8 @@ constexpr std::uint32_t kFeatureLow = 1;
 constexpr std::uint32_t kFeatureHigh = 2;
 constexpr std::uint32_t kFeatureBetween = 3;
 
-/// Squared sine (Q60) of 1 mrad: below it axes are taken for parallel.
-constexpr std::int64_t kParallelSquare = (std::int64_t{1} << 60) / 1000000;
 /// Squared sine (Q60) of 14 degrees: above it capsules touch in one point.
 constexpr std::int64_t kLineSquare = (std::int64_t{1} << 60) / 16;
-
-/// Two segments: A's about the origin, B's about `delta`, points named by their length along each.
-struct Segments {
-    std::int32_t delta[3];
-    std::int32_t axis_a[3];
-    std::int32_t axis_b[3];
-    std::int32_t half_a;
-    std::int32_t half_b;
-    std::int32_t cosine;      // Q2.30
-    std::int64_t sine_square; // Q60
-    std::int64_t along_a;     // of delta
-    std::int64_t along_b;
-};
-
-std::int32_t on_segment(std::int64_t along, std::int32_t half) {
-    return static_cast<std::int32_t>(clamped<std::int64_t>(along, -half, half));
-}
 
 Segments
 make_segments(const ShapeInstance& a, const ShapeInstance& b, const std::int32_t delta[3]) {
@@ -43,51 +25,8 @@ make_segments(const ShapeInstance& a, const ShapeInstance& b, const std::int32_t
     }
     s.half_a = a.size[1];
     s.half_b = b.size[1];
-    s.cosine = round_unit(dot_wide(s.axis_a, s.axis_b));
-    s.sine_square = (std::int64_t{1} << 60) - static_cast<std::int64_t>(s.cosine) * s.cosine;
-    s.along_a = round_unit_wide(dot_wide(s.axis_a, delta));
-    s.along_b = round_unit_wide(dot_wide(s.axis_b, delta));
+    complete(s);
     return s;
-}
-
-/// B's point nearest to A's point `on_a`.
-std::int32_t nearest_on_b(const Segments& s, std::int32_t on_a) {
-    return on_segment(scale(on_a, s.cosine) - s.along_b, s.half_b);
-}
-
-std::int32_t nearest_on_a(const Segments& s, std::int32_t on_b) {
-    return on_segment(scale(on_b, s.cosine) + s.along_a, s.half_a);
-}
-
-/// A's range that lies beside B; empty where low >= high.
-struct Overlap {
-    std::int32_t low;
-    std::int32_t high;
-};
-
-Overlap overlap(const Segments& s) {
-    const std::int32_t reach = magnitude(scale(s.half_b, s.cosine));
-    return {on_segment(s.along_a - reach, s.half_a), on_segment(s.along_a + reach, s.half_a)};
-}
-
-/// A's point nearest to B (Ericson, Real-Time Collision Detection, 5.1.9).
-std::int32_t nearest_to_b(const Segments& s, const Overlap& beside) {
-    if (s.sine_square < kParallelSquare) {
-        // All of the overlap is nearest, but for rounding: its middle does not jump about.
-        return static_cast<std::int32_t>((std::int64_t{beside.low} + beside.high) >> 1);
-    }
-    const std::int64_t numerator = s.along_a * kUnitOne - s.along_b * s.cosine;
-    const std::int32_t on_a = on_segment(numerator / (s.sine_square >> kUnitFraction), s.half_a);
-    return nearest_on_a(s, nearest_on_b(s, on_a));
-}
-
-/// From A's to B's point, saturated: then they do not touch.
-void between(const Segments& s, std::int32_t on_a, std::int32_t on_b, std::int32_t gap[3]) {
-    for (int axis = 0; axis < 3; ++axis) {
-        gap[axis] =
-            raw_saturate<std::int32_t>(std::int64_t{s.delta[axis]} + scale(on_b, s.axis_b[axis]) -
-                                       scale(on_a, s.axis_a[axis]));
-    }
 }
 
 /// Where the segments meet: across both, else sideways out of A; from A to B.

@@ -1,4 +1,7 @@
 #include "geometry/pair_kernels.h"
+#include "geometry/polytope_face.h"
+
+#include <limits>
 
 namespace lockwind {
 
@@ -124,6 +127,62 @@ void collide_plane_box(const ShapeInstance& plane,
         out.points[out.point_count].feature = corner.signs + 1;
         emit_plane_point(plane, box, delta, from_b, corner.separation, out);
     }
+}
+
+/// The corners of the face that lies lowest, all of them, or four.
+void collide_hull_plane(const ShapeInstance& hull,
+                        const ShapeInstance& plane,
+                        const std::int32_t delta[3],
+                        ManifoldGeometry& out) {
+    std::int32_t up[3];
+    std::int32_t direction[3];
+    axis_of(plane, 1, up);
+    inverse_rotate(hull.rotation, up, direction);
+    BoxFeatures room;
+    const Polytope polytope = polytope_of(hull, room);
+    const std::uint32_t face = face_against(polytope, direction);
+    // In the plane's own axes z and x; the hull's centre stands -delta from the plane's foot.
+    const std::int64_t height = -round_unit_wide(dot_wide(up, delta));
+    std::int32_t axes[2][3];
+    for (int index = 0; index < 2; ++index) {
+        std::int32_t axis[3];
+        axis_of(plane, index == 0 ? 2 : 0, axis);
+        inverse_rotate(hull.rotation, axis, axes[index]);
+    }
+    FacePolygon<kHullVerticesMax> polygon;
+    for (std::uint32_t corner = 0; corner < polytope.faces[face].corner_count; ++corner) {
+        const std::int32_t* place = polytope.place(polytope.faces[face], corner);
+        const std::uint8_t vertex = polytope.corner(polytope.faces[face], corner).vertex;
+        polygon.add(
+            {{round_unit_wide(dot_wide(axes[0], place)), round_unit_wide(dot_wide(axes[1], place))},
+             height + round_unit_wide(dot_wide(direction, place)),
+             vertex,
+             vertex});
+    }
+    FacePoints contact;
+    keep_contact(polygon, std::numeric_limits<std::int64_t>::max(), contact);
+    const Midway between = midway(hull, plane);
+    for (int index = 0; index < contact.count; ++index) {
+        const FacePoint& from = contact.points[index];
+        ManifoldPoint& point = out.points[index];
+        point.separation = raw_saturate<std::int32_t>(from.separation);
+        const std::int32_t lift = between.from_first(point.separation);
+        std::int32_t middle[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            point.local_a[axis] =
+                polytope.vertices[from.edge_in].place[axis] - scale(lift, direction[axis]);
+        }
+        rotate(hull.rotation, point.local_a, middle);
+        for (int axis = 0; axis < 3; ++axis) {
+            middle[axis] -= delta[axis];
+        }
+        to_local(plane, middle, point.local_b);
+        point.feature = from.edge_in + 1U;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        out.normal[axis] = -up[axis];
+    }
+    out.point_count = static_cast<std::uint32_t>(contact.count);
 }
 
 } // namespace lockwind

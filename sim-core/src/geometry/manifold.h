@@ -19,11 +19,13 @@ struct ManifoldGeometry {
     std::int32_t normal[3];    // Q2.30, world, from A to B
     std::uint32_t point_count; // 0: separated by more than the speculative margin
     ManifoldPoint points[kManifoldPointsMax];
-    std::uint32_t axis; // box-box: separating or reference axis, 1 .. 15; 0 for none; for the cache
+    std::uint32_t axis; // separating or reference axis, for the cache; 0 for none. Two boxes:
+                        // 1 .. 15; hulls: 1 .. 64 the faces of the hull that comes first, 65 .. 128
+                        // of the other hull or box
     std::int32_t axis_separation; // Q9.22 m: separation of the reference face when it was chosen
 };
 
-/// What collide() may reuse of the pair's last result (box-box only).
+/// What collide() may reuse of the pair's last result (boxes and hulls only).
 struct ManifoldCache {
     std::uint32_t axis = 0;
     std::int32_t axis_separation = 0;

@@ -30,34 +30,21 @@ UnitInertia capsule_inertia(std::uint64_t r, std::uint64_t h) {
     return {{across, SquareMetres::from_raw(along), across}};
 }
 
-/// mantissa / 2^fraction.
-struct Scaled {
-    std::uint64_t mantissa;
-    int fraction;
-};
-
-/// The leading 64 bits of value / 2^fraction.
-Scaled leading(const UInt128& value, int fraction) {
-    const int excess = bit_width(value) - 64;
-    return excess > 0 ? Scaled{(value >> excess).low, fraction - excess}
-                      : Scaled{value.low, fraction};
-}
-
 /// Cubic metres; sizes are Q9.22.
-Scaled volume_of(ShapeType type, const std::int32_t size[3]) {
+Volume volume_of(ShapeType type, const std::int32_t size[3]) {
     constexpr int kCubeFraction = 3 * kLengthFraction;
     constexpr std::uint64_t kFourThirdsPi = 9658692610769497123U; // Q61
     const auto x = static_cast<std::uint64_t>(size[0]);
     const auto y = static_cast<std::uint64_t>(size[1]);
     const auto z = static_cast<std::uint64_t>(size[2]);
     if (type == ShapeType::box) {
-        return leading(multiply_wide(x * y, z), kCubeFraction - 3);
+        return leading_bits(multiply_wide(x * y, z), kCubeFraction - 3);
     }
     // pi r^2 (2 h + 4/3 r) = 2/3 pi r^2 (3 h + 2 r).
-    const Scaled round = type == ShapeType::sphere
-                             ? leading(multiply_wide(x * x, x), kCubeFraction)
-                             : leading(multiply_wide(x * x, 3 * y + 2 * x), kCubeFraction + 1);
-    return leading(multiply_wide(round.mantissa, kFourThirdsPi), round.fraction + 61);
+    const Volume round = type == ShapeType::sphere
+                             ? leading_bits(multiply_wide(x * x, x), kCubeFraction)
+                             : leading_bits(multiply_wide(x * x, 3 * y + 2 * x), kCubeFraction + 1);
+    return leading_bits(multiply_wide(round.mantissa, kFourThirdsPi), round.fraction + 61);
 }
 
 } // namespace
@@ -81,18 +68,27 @@ UnitInertia unit_inertia(ShapeType type, const std::int32_t size[3]) {
              moment(squared(x) + squared(y), 3)}};
 }
 
-Real mass_of(ShapeType type, const std::int32_t size[3], Real density) {
+Volume leading_bits(const UInt128& value, int fraction) {
+    const int excess = bit_width(value) - 64;
+    return excess > 0 ? Volume{(value >> excess).low, fraction - excess}
+                      : Volume{value.low, fraction};
+}
+
+Real mass_of(const Volume& volume, Real density) {
     constexpr auto kHighest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
     if (density <= 0) {
         return 0;
     }
-    const Scaled volume = volume_of(type, size);
     const UInt128 mass = multiply_wide(volume.mantissa, static_cast<std::uint64_t>(density.raw()));
     // Q(volume.fraction + 32) -> Q32, to the nearest.
     const UInt128 shifted =
         volume.fraction > 0 ? ((mass >> (volume.fraction - 1)) + UInt128{0, 1}) >> 1 : mass;
     const bool fits = volume.fraction >= 0 && shifted.high == 0 && shifted.low <= kHighest;
     return fits ? Real::from_raw(static_cast<std::int64_t>(shifted.low)) : Real::highest();
+}
+
+Real mass_of(ShapeType type, const std::int32_t size[3], Real density) {
+    return mass_of(volume_of(type, size), density);
 }
 
 } // namespace lockwind

@@ -2,6 +2,7 @@
 
 #include "geometry/collide.h"
 #include "geometry/fixed_geometry.h"
+#include "geometry/hull.h"
 #include "geometry/rotation.h"
 
 #include <algorithm>
@@ -49,6 +50,24 @@ void collide_plane_box(const ShapeInstance& plane,
                        const ShapeInstance& box,
                        const std::int32_t delta[3],
                        ManifoldGeometry& out);
+void collide_hull_sphere(const ShapeInstance& hull,
+                         const ShapeInstance& sphere,
+                         const std::int32_t delta[3],
+                         ManifoldGeometry& out);
+void collide_hull_capsule(const ShapeInstance& hull,
+                          const ShapeInstance& capsule,
+                          const std::int32_t delta[3],
+                          ManifoldGeometry& out);
+void collide_hull_plane(const ShapeInstance& hull,
+                        const ShapeInstance& plane,
+                        const std::int32_t delta[3],
+                        ManifoldGeometry& out);
+/// A hull and a hull or box.
+void collide_polytopes(const ShapeInstance& a,
+                       const ShapeInstance& b,
+                       const std::int32_t delta[3],
+                       const ManifoldCache& cache,
+                       ManifoldGeometry& out);
 
 /// Half the longest and shortest way across, Q9.22; of a plane, more than any.
 struct Girth {
@@ -66,6 +85,8 @@ inline Girth girth_of(const ShapeInstance& shape) {
         return {size[0] + size[1], size[0]};
     case ShapeType::box:
         return {std::max({size[0], size[1], size[2]}), std::min({size[0], size[1], size[2]})};
+    case ShapeType::hull:
+        return {shape.hull->width_most, shape.hull->width_least};
     case ShapeType::plane:
         break;
     }

@@ -1,6 +1,7 @@
 #include "geometry/ray_cast.h"
 
 #include "geometry/fixed_geometry.h"
+#include "geometry/hull.h"
 #include "geometry/rotation.h"
 
 #include "lockwind/int128.h"
@@ -84,6 +85,40 @@ bool cast_box(const LocalRay& ray, const std::int32_t half_extents[3], LocalHit&
     hit.fraction = enter;
     hit.normal[0] = hit.normal[1] = hit.normal[2] = 0;
     hit.normal[face] = ray.way[face] < 0 ? kUnitOne : -kUnitOne;
+    return true;
+}
+
+/// Clips the segment against the faces (Cyrus and Beck 1978), on exact fractions of heights that
+/// are rounded to 2^-32 m.
+bool cast_hull(const LocalRay& ray, const Hull& hull, LocalHit& hit) {
+    Fraction enter{-1, 1};
+    Fraction leave{1, 1};
+    std::uint32_t entered = 0;
+    for (std::uint32_t index = 0; index < hull.face_count; ++index) {
+        const HullFace& face = hull.faces[index];
+        const std::int64_t start = dot_unit(face.normal, ray.start) - widened(face.offset);
+        const std::int64_t way = dot_unit(face.normal, ray.way);
+        if (way >= 0) {
+            if (start > 0) {
+                return false;
+            }
+            const Fraction out{-start, way};
+            leave = way > 0 && before(out, leave) ? out : leave;
+            continue;
+        }
+        const Fraction in{start, -way};
+        if (start >= 0 && (enter.numerator < 0 || before(enter, in))) {
+            enter = in;
+            entered = index;
+        }
+    }
+    if (enter.numerator < 0 || before(leave, enter)) {
+        return false;
+    }
+    hit.fraction = enter;
+    for (int axis = 0; axis < 3; ++axis) {
+        hit.normal[axis] = hull.faces[entered].normal[axis];
+    }
     return true;
 }
 
@@ -228,6 +263,8 @@ bool cast_local(const ShapeInstance& shape, const LocalRay& ray, LocalHit& hit) 
         return cast_box(ray, shape.size, hit);
     case ShapeType::plane:
         return cast_plane(ray, hit);
+    case ShapeType::hull:
+        return cast_hull(ray, *shape.hull, hit);
     }
     return false;
 }

@@ -77,7 +77,10 @@ Status check_body(const WorldDefinition& definition, Slot slot) {
     return Success{};
 }
 
-Status make_ball(const WorldDefinition& definition, Slot slot, BodyRecord& ball) {
+Status make_ball(const WorldDefinition& definition,
+                 const ShapeLibrary& shapes,
+                 Slot slot,
+                 BodyRecord& ball) {
     const PodDefinition& pod = definition.pods[slot];
     BodyDefinition body;
     body.id = pod.body;
@@ -86,10 +89,29 @@ Status make_ball(const WorldDefinition& definition, Slot slot, BodyRecord& ball)
     body.density = pod.ball_density;
     body.friction = kBallFriction;
     body.restitution = kBallRestitution;
-    if (Status made = make_body(body, definition.settings, ball.motion, ball.properties); !made) {
+    if (Status made = make_body(body, definition.settings, shapes, ball.motion, ball.properties);
+        !made) {
         return pod_error(slot, "ball: " + made.error().message);
     }
     ball.motion.id = 0;
+    return Success{};
+}
+
+/// See turn_to_given_frame; of a pod's body as it is defined.
+Status read_turn(const WorldDefinition& definition,
+                 const ShapeLibrary& shapes,
+                 Slot slot,
+                 RealQuat& turn) {
+    const auto body = std::find_if(
+        definition.bodies.begin(), definition.bodies.end(), [&](const BodyDefinition& other) {
+            return other.id == definition.pods[slot].body;
+        });
+    BodyRecord made{};
+    if (Status status = make_body(*body, definition.settings, shapes, made.motion, made.properties);
+        !status) {
+        return status;
+    }
+    turn = turn_to_given_frame(made.properties, shapes);
     return Success{};
 }
 
@@ -100,6 +122,7 @@ Real stick(std::int16_t value) {
 } // namespace
 
 Result<PodSystem> PodSystem::create(const WorldDefinition& definition,
+                                    const ShapeLibrary& shapes,
                                     std::uint32_t body_capacity) {
     PodSystem system;
     system.tick_seconds_ = kOne / Real(definition.settings.tick_rate_hz);
@@ -113,7 +136,11 @@ Result<PodSystem> PodSystem::create(const WorldDefinition& definition,
             return status.error();
         }
         BodyRecord ball{};
-        if (Status status = make_ball(definition, slot, ball); !status) {
+        if (Status status = make_ball(definition, shapes, slot, ball); !status) {
+            return status.error();
+        }
+        RealQuat to_given;
+        if (Status status = read_turn(definition, shapes, slot, to_given); !status) {
             return status.error();
         }
         system.pods_.push_back({pod.body,
@@ -124,7 +151,8 @@ Result<PodSystem> PodSystem::create(const WorldDefinition& definition,
                                 pod.ball_speed,
                                 pod.ball_cooldown_ticks,
                                 pod.ball_lifetime_ticks,
-                                ball});
+                                ball,
+                                to_given});
     }
     return system;
 }
@@ -192,7 +220,7 @@ void PodSystem::drive(const Parameters& pod, const PlayerInput& input, BodyMotio
     if (thrust == Real(0)) {
         return;
     }
-    const Vec3 ahead = rotate(read_orientation(motion), Vec3{0, 0, 1});
+    const Vec3 ahead = rotate(read_orientation(motion) * pod.to_given, Vec3{0, 0, 1});
     const Vec3 direction = Vec3{ahead.x, 0, ahead.z} * thrust;
     Vec3 velocity = read_velocity(motion.linear_velocity);
     const Real speed = dot(velocity, Vec3{ahead.x, 0, ahead.z}) * (thrust < Real(0) ? -1 : 1);
@@ -207,7 +235,7 @@ void PodSystem::balance(const Parameters& pod,
                         const PlayerInput& input,
                         Real gyration_radius,
                         BodyMotion& motion) const {
-    const RealQuat orientation = read_orientation(motion);
+    const RealQuat orientation = read_orientation(motion) * pod.to_given;
     const Vec3 up = rotate(orientation, Vec3{0, 1, 0});
     Vec3 spin = read_velocity(motion.angular_velocity);
     // up x (world's up): its length is the sine of the tilt. Upside down: full strength, and about
@@ -247,7 +275,7 @@ void PodSystem::spawn_balls(const DynamicsTables& tables,
         const Real upwards = random_symmetric(seed, player.body, player.draw_count + 1) * kSpread;
         player.draw_count += 2;
         const Vec3 direction =
-            normalized(rotate(read_orientation(motion), Vec3{sideways, upwards, 1}));
+            normalized(rotate(read_orientation(motion) * pod.to_given, Vec3{sideways, upwards, 1}));
         const Real reach = convert<Real>(Length::from_raw(properties.bounding_radius)) +
                            convert<Real>(Length::from_raw(pod.ball.properties.bounding_radius)) +
                            kMuzzleGap;

@@ -29,7 +29,9 @@ struct Goal {
 class PodSystem {
 public:
     /// The Error names the pod's slot and what is wrong. `body_capacity` sizes the scratch.
-    static Result<PodSystem> create(const WorldDefinition& definition, std::uint32_t body_capacity);
+    static Result<PodSystem> create(const WorldDefinition& definition,
+                                    const ShapeLibrary& shapes,
+                                    std::uint32_t body_capacity);
 
     /// Rows of section "player" as a match begins.
     std::vector<Player> initial_players() const;
@@ -56,7 +58,8 @@ private:
         Real ball_speed;
         std::uint32_t cooldown_ticks;
         std::uint32_t lifetime_ticks;
-        BodyRecord ball; // at the origin, at rest, without an id
+        BodyRecord ball;   // at the origin, at rest, without an id
+        RealQuat to_given; // from the body's principal axes to the frame that its +z is of
     };
 
     PodSystem() = default;

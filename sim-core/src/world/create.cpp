@@ -39,7 +39,9 @@ std::array<std::uint32_t, section::kCount> capacities_of(const DynamicsSettings&
     return rows;
 }
 
-Status make_bodies(const WorldDefinition& definition, const DynamicsTables& tables) {
+Status make_bodies(const WorldDefinition& definition,
+                   const ShapeLibrary& shapes,
+                   const DynamicsTables& tables) {
     std::vector<const BodyDefinition*> sorted;
     for (const BodyDefinition& body : definition.bodies) {
         sorted.push_back(&body);
@@ -51,8 +53,11 @@ Status make_bodies(const WorldDefinition& definition, const DynamicsTables& tabl
     tables.properties.set_count(static_cast<std::uint32_t>(sorted.size()));
     tables.sleep.set_count(static_cast<std::uint32_t>(sorted.size()));
     for (BodyRow row = 0; row < sorted.size(); ++row) {
-        if (Status made = make_body(
-                *sorted[row], definition.settings, tables.motion[row], tables.properties[row]);
+        if (Status made = make_body(*sorted[row],
+                                    definition.settings,
+                                    shapes,
+                                    tables.motion[row],
+                                    tables.properties[row]);
             !made) {
             return made;
         }
@@ -60,7 +65,9 @@ Status make_bodies(const WorldDefinition& definition, const DynamicsTables& tabl
     return Success{};
 }
 
-Status make_joints(const WorldDefinition& definition, const DynamicsTables& tables) {
+Status make_joints(const WorldDefinition& definition,
+                   const ShapeLibrary& shapes,
+                   const DynamicsTables& tables) {
     std::vector<const JointDefinition*> sorted;
     for (const JointDefinition& joint : definition.joints) {
         sorted.push_back(&joint);
@@ -73,6 +80,7 @@ Status make_joints(const WorldDefinition& definition, const DynamicsTables& tabl
         const JointDefinition& joint = *sorted[row];
         if (Status made = make_joint(joint,
                                      tables,
+                                     shapes,
                                      row_of(tables.motion, joint.body_a),
                                      row_of(tables.motion, joint.body_b),
                                      tables.joints[row]);
@@ -88,11 +96,12 @@ Status make_joints(const WorldDefinition& definition, const DynamicsTables& tabl
 World::Impl::Impl(const WorldDefinition& definition,
                   const DynamicsSettings& dynamics_capacities,
                   Simd simd,
+                  ShapeLibrary library,
                   PodSystem pod_system)
-    : settings(definition.settings), capacities(dynamics_capacities),
+    : settings(definition.settings), capacities(dynamics_capacities), shapes(std::move(library)),
       arena(kWorldSections, capacities_of(capacities, definition.pods.size())),
       staging(kWorldSections, capacities_of(capacities, definition.pods.size())), hasher(arena),
-      dynamics(capacities, simd), pods(std::move(pod_system)),
+      dynamics(capacities, &shapes, simd), pods(std::move(pod_system)),
       spawner(capacities.body_capacity, creations_max(definition.pods.size())),
       events(events_max(capacities)), manifold_seen(capacities.manifold_capacity) {}
 
@@ -114,16 +123,22 @@ Result<WorldPtr> World::create(const WorldDefinition& definition, Simd simd) {
         return status.error();
     }
     const DynamicsSettings capacities = dynamics_settings(definition);
-    Result<PodSystem> pods = PodSystem::create(definition, capacities.body_capacity);
+    Result<ShapeLibrary> shapes = ShapeLibrary::create(definition.hulls);
+    if (!shapes) {
+        return shapes.error();
+    }
+    Result<PodSystem> pods =
+        PodSystem::create(definition, shapes.value(), capacities.body_capacity);
     if (!pods) {
         return pods.error();
     }
-    auto impl = std::make_unique<Impl>(definition, capacities, simd, std::move(pods).value());
+    auto impl = std::make_unique<Impl>(
+        definition, capacities, simd, std::move(shapes).value(), std::move(pods).value());
     const DynamicsTables tables = impl->tables();
-    if (Status status = make_bodies(definition, tables); !status) {
+    if (Status status = make_bodies(definition, impl->shapes, tables); !status) {
         return status.error();
     }
-    if (Status status = make_joints(definition, tables); !status) {
+    if (Status status = make_joints(definition, impl->shapes, tables); !status) {
         return status.error();
     }
     impl->arena.set_row_count(section::kGlobals, 1);

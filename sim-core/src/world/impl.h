@@ -3,6 +3,7 @@
 #include "base/arena.h"
 #include "base/state_hash.h"
 #include "dynamics/dynamics.h"
+#include "geometry/shape_library.h"
 #include "systems/pod.h"
 #include "systems/spawn.h"
 #include "world/event_log.h"
@@ -20,6 +21,7 @@ struct World::Impl {
     Impl(const WorldDefinition& definition,
          const DynamicsSettings& capacities,
          Simd simd,
+         ShapeLibrary library,
          PodSystem pod_system);
 
     Globals& globals() { return arena.table<Globals>(section::kGlobals)[0]; }
@@ -34,6 +36,7 @@ struct World::Impl {
     // Constants of the match.
     WorldSettings settings;
     DynamicsSettings capacities;
+    ShapeLibrary shapes;
     std::vector<BodyRecord> pod_starts; // by slot
     std::vector<BodyId> pod_ids;        // by slot
 

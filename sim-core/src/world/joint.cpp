@@ -36,6 +36,7 @@ Status World::create_joint(const JointDefinition& definition) {
     Joint joint{};
     if (Status made = make_joint(definition,
                                  tables,
+                                 impl_->shapes,
                                  row_of(tables.motion, definition.body_a),
                                  row_of(tables.motion, definition.body_b),
                                  joint);

@@ -11,9 +11,11 @@ namespace lockwind {
 
 namespace {
 
-BodyView
-view_of(const BodyMotion& motion, const BodyProperties& properties, const BodySleep& sleep) {
-    const BodyReading body = read_body(motion, properties);
+BodyView view_of(const BodyMotion& motion,
+                 const BodyProperties& properties,
+                 const BodySleep& sleep,
+                 const ShapeLibrary& shapes) {
+    const BodyReading body = read_body(motion, properties, shapes);
     return {motion.id,
             body.mode,
             body.shape,
@@ -105,7 +107,7 @@ std::uint32_t World::body_count() const {
 BodyView World::body_at(BodyRow row) const {
     const DynamicsTables tables = impl_->tables();
     LOCKWIND_ASSERT(row < tables.motion.count());
-    return view_of(tables.motion[row], tables.properties[row], tables.sleep[row]);
+    return view_of(tables.motion[row], tables.properties[row], tables.sleep[row], impl_->shapes);
 }
 
 std::optional<BodyView> World::body(BodyId id) const {
@@ -173,7 +175,9 @@ Status World::create_body(const BodyDefinition& definition) {
         return Error{"body " + std::to_string(definition.id) + ": id is used already"};
     }
     BodyRecord body{};
-    if (Status made = make_body(definition, impl_->settings, body.motion, body.properties); !made) {
+    if (Status made =
+            make_body(definition, impl_->settings, impl_->shapes, body.motion, body.properties);
+        !made) {
         return made;
     }
     if (definition.mode != BodyMode::fixed && is_outside(body.motion, impl_->settings.bounds)) {
@@ -208,7 +212,7 @@ std::optional<RayHit> World::ray_cast(const Vec3& from, const Vec3& to) const {
         const BodyMotion& motion = tables.motion[row];
         std::int32_t rotation[9];
         rotation_matrix(motion.orientation, rotation);
-        const ShapeInstance shape = shape_of(tables.properties[row], rotation);
+        const ShapeInstance shape = shape_of(tables.properties[row], impl_->shapes, rotation);
         ShapeRayHit hit{};
         const bool met = lockwind::ray_cast(shape, motion.position, start, end, hit);
         // Strictly nearer: rows are in id order, so that ties stay with the lower id.

@@ -17,7 +17,7 @@ Status World::Impl::validate(StateArena& state, const DynamicsTables* known) {
     if (Status status = check_players(state_players, pod_ids); !status) {
         return status;
     }
-    if (Status status = check_bodies(rows, known, settings); !status) {
+    if (Status status = check_bodies(rows, known, settings, shapes); !status) {
         return status;
     }
     if (Status status = check_joints(rows); !status) {

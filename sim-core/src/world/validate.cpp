@@ -111,29 +111,33 @@ const char* bad_motion_field(const BodyMotion& motion, const BodyProperties& pro
 
 /// What make_body derives from shape and mode alone.
 bool same_build(const BodyProperties& a, const BodyProperties& b) {
-    return a.mode == b.mode && a.shape == b.shape && a.bounding_radius == b.bounding_radius &&
-           a.gyration_radius == b.gyration_radius &&
+    return a.mode == b.mode && a.shape == b.shape && a.hull == b.hull &&
+           a.bounding_radius == b.bounding_radius && a.gyration_radius == b.gyration_radius &&
            a.inverse_gyration_radius == b.inverse_gyration_radius &&
            std::equal(a.size, a.size + 3, b.size) &&
            std::equal(a.inverse_inertia, a.inverse_inertia + 3, b.inverse_inertia);
 }
 
 /// Makes a body of the same shape and mode and compares.
-bool is_buildable(const BodyMotion& motion,
-                  const BodyProperties& properties,
-                  const WorldSettings& settings) {
+bool is_buildable(const BodyProperties& properties,
+                  const WorldSettings& settings,
+                  const ShapeLibrary& shapes) {
     if (properties.mode > static_cast<std::uint8_t>(BodyMode::dynamic) ||
-        properties.shape > static_cast<std::uint8_t>(ShapeType::plane)) {
+        properties.shape > static_cast<std::uint8_t>(ShapeType::hull)) {
         return false;
     }
-    const BodyReading reading = read_body(motion, properties);
+    if (properties.shape == static_cast<std::uint8_t>(ShapeType::hull) &&
+        properties.hull >= shapes.hull_count()) {
+        return false;
+    }
+    const BodyReading reading = read_body({}, properties, shapes);
     BodyDefinition definition;
     definition.id = 1;
     definition.mode = reading.mode;
     definition.shape = reading.shape;
     definition.mass = 1;
     BodyRecord built{};
-    return make_body(definition, settings, built.motion, built.properties).ok() &&
+    return make_body(definition, settings, shapes, built.motion, built.properties).ok() &&
            same_build(built.properties, properties);
 }
 
@@ -189,6 +193,14 @@ const char* bad_sleep_field(const BodySleep& sleep,
     return sleep.zero != 0 ? "zero" : nullptr;
 }
 
+/// The highest axis that collide() leaves in the cache: see ManifoldGeometry.
+std::uint32_t axis_max(const DynamicsTables& tables, const Pair& pair) {
+    constexpr auto kHull = static_cast<std::uint8_t>(ShapeType::hull);
+    const bool has_hull = tables.properties[pair.row_a].shape == kHull ||
+                          tables.properties[pair.row_b].shape == kHull;
+    return has_hull ? 2 * kHullFacesMax : 15;
+}
+
 const char* bad_pair_field(const DynamicsTables& tables, std::uint32_t index) {
     const Pair& pair = tables.pairs[index];
     if (pair.row_a >= pair.row_b || pair.row_b >= tables.motion.count()) {
@@ -210,7 +222,7 @@ const char* bad_pair_field(const DynamicsTables& tables, std::uint32_t index) {
     if (!a || !b || !overlaps(*a, *b)) {
         return "row_a or its fat_bounds";
     }
-    if (pair.axis > 15) {
+    if (pair.axis > axis_max(tables, pair)) {
         return "axis";
     }
     if ((pair.manifold == kNoIndex) != (pair.point_count == 0)) {
@@ -351,7 +363,8 @@ Status check_players(const Table<Player>& players, std::span<const BodyId> pods)
 
 Status check_bodies(const DynamicsTables& tables,
                     const DynamicsTables* known,
-                    const WorldSettings& settings) {
+                    const WorldSettings& settings,
+                    const ShapeLibrary& shapes) {
     const std::uint32_t count = tables.motion.count();
     if (tables.properties.count() != count || tables.sleep.count() != count) {
         return Error{
@@ -365,8 +378,8 @@ Status check_bodies(const DynamicsTables& tables,
         }
         const bool is_known = known != nullptr && row < known->properties.count() &&
                               same_build(known->properties[row], properties);
-        if (!is_known && !is_buildable(motion, properties, settings)) {
-            return bad("body_properties", row, "mode, shape, size or inertia");
+        if (!is_known && !is_buildable(properties, settings, shapes)) {
+            return bad("body_properties", row, "mode, shape, hull, size or inertia");
         }
         if (const char* field = bad_properties_field(properties); field != nullptr) {
             return bad("body_properties", row, field);

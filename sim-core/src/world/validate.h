@@ -24,10 +24,11 @@ Status check_players(const Table<Player>& players, std::span<const BodyId> pods)
 /// `known`, where given, is a sound state: what its bodies are built of is not made anew.
 Status check_bodies(const DynamicsTables& tables,
                     const DynamicsTables* known,
-                    const WorldSettings& settings);
-/// Of bodies that are checked.
+                    const WorldSettings& settings,
+                    const ShapeLibrary& shapes);
+/// Of bodies that are sound.
 Status check_joints(const DynamicsTables& tables);
-/// `seen` is scratch of manifold capacity.
+/// Of sound bodies. `seen` is scratch of manifold capacity.
 Status check_contacts(const DynamicsTables& tables, std::span<std::uint8_t> seen);
 
 } // namespace lockwind

@@ -96,7 +96,7 @@ public:
         ++state_.sleep_count;
         definition.id = row + 1;
         const Status made =
-            make_body(definition, settings_, state_.motion[row], state_.properties[row]);
+            make_body(definition, settings_, {}, state_.motion[row], state_.properties[row]);
         EXPECT_TRUE(made.ok()) << made.error().message;
         return row;
     }
@@ -110,6 +110,7 @@ public:
         };
         const Status made = make_joint(definition,
                                        tables(),
+                                       {},
                                        row_of(definition.body_a),
                                        row_of(definition.body_b),
                                        state_.joints[row]);

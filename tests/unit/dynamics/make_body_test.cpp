@@ -38,7 +38,7 @@ struct Made {
 
 Made make(const BodyDefinition& definition, const WorldSettings& settings = {}) {
     Made made;
-    const Status status = make_body(definition, settings, made.motion, made.properties);
+    const Status status = make_body(definition, settings, {}, made.motion, made.properties);
     if (!status) {
         made.error = status.error().message;
     }
@@ -125,7 +125,7 @@ TEST(MakeBody, SmallestSphereKeepsItsInertiaBehindAClampedRadius) {
     EXPECT_NEAR(fixed_value(made.properties.inverse_inertia[0], 26),
                 rho * rho / (0.4 * radius * radius),
                 1e-6);
-    EXPECT_NEAR(value(read_body(made.motion, made.properties).angular_velocity.z), 50, 1e-3);
+    EXPECT_NEAR(value(read_body(made.motion, made.properties, {}).angular_velocity.z), 50, 1e-3);
 }
 
 TEST(MakeBody, NormalisesTheOrientationAtEveryScale) {
@@ -169,7 +169,7 @@ TEST(MakeBody, EveryAllowedMassHasAnInverseThatFits) {
         ASSERT_EQ(made.error, "");
         EXPECT_GT(made.properties.inverse_mass, 1000);
         EXPECT_LT(made.properties.inverse_mass, std::int64_t{1} << 60);
-        const double read = value(read_body(made.motion, made.properties).mass);
+        const double read = value(read_body(made.motion, made.properties, {}).mass);
         EXPECT_NEAR(read, value(mass), value(mass) * 1e-3);
     }
 }
@@ -188,7 +188,7 @@ TEST(MakeBody, OnlyDynamicBodiesHaveMass) {
         for (const std::int32_t ratio : made.properties.inverse_inertia) {
             EXPECT_EQ(ratio, 0);
         }
-        EXPECT_EQ(read_body(made.motion, made.properties).mass, Real(0));
+        EXPECT_EQ(read_body(made.motion, made.properties, {}).mass, Real(0));
     }
 }
 
@@ -199,7 +199,7 @@ TEST(MakeBody, KinematicBodiesTurnByTheirBoundingRadius) {
     const Made made = make(definition);
     ASSERT_EQ(made.error, "");
     EXPECT_EQ(made.properties.gyration_radius, made.properties.bounding_radius);
-    EXPECT_NEAR(value(read_body(made.motion, made.properties).angular_velocity.y), 2, 1e-6);
+    EXPECT_NEAR(value(read_body(made.motion, made.properties, {}).angular_velocity.y), 2, 1e-6);
 }
 
 TEST(MakeBody, FixedPlaneHasNoExtent) {
@@ -219,7 +219,7 @@ TEST(ReadBody, GivesBackWhatWasMade) {
     definition.orientation = {0.5, 0.5, -0.5, 0.5};
     definition.angular_velocity = {1.25, -7, 0.5};
     const Made made = make(definition);
-    const BodyReading reading = read_body(made.motion, made.properties);
+    const BodyReading reading = read_body(made.motion, made.properties, {});
     EXPECT_EQ(reading.mode, definition.mode);
     EXPECT_EQ(reading.shape.type, ShapeType::box);
     EXPECT_EQ(reading.shape.half_extents, definition.shape.half_extents);
@@ -245,7 +245,7 @@ TEST(ReadBody, RemakingFromAReadingGivesTheSameProperties) {
             const Made made = make(definition);
             ASSERT_EQ(made.error, "");
             BodyDefinition again = definition;
-            again.shape = read_body(made.motion, made.properties).shape;
+            again.shape = read_body(made.motion, made.properties, {}).shape;
             const Made remade = make(again);
             ASSERT_EQ(remade.error, "");
             EXPECT_EQ(std::memcmp(&made.properties, &remade.properties, sizeof(BodyProperties)), 0);
@@ -256,7 +256,7 @@ TEST(ReadBody, RemakingFromAReadingGivesTheSameProperties) {
 TEST(ShapeOf, CarriesTypeSizeAndRotation) {
     const Made made = make(crate());
     const std::int32_t rotation[9] = {};
-    const ShapeInstance shape = shape_of(made.properties, rotation);
+    const ShapeInstance shape = shape_of(made.properties, {}, rotation);
     EXPECT_EQ(shape.type, ShapeType::box);
     EXPECT_EQ(shape.size[2], 1 << 22);
     EXPECT_EQ(shape.rotation, rotation);
@@ -281,7 +281,7 @@ TEST_P(MakeBodyRefuses, NamingBodyAndFieldAndLeavingTheRows) {
     motion.id = 99;
     BodyProperties properties{};
     properties.friction = 99;
-    const Status status = make_body(definition, {}, motion, properties);
+    const Status status = make_body(definition, {}, {}, motion, properties);
     ASSERT_FALSE(status);
     EXPECT_NE(status.error().message.find("body " + std::to_string(definition.id) + ":"),
               std::string::npos)
@@ -301,7 +301,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{
             "UnknownMode", [](BodyDefinition& d) { d.mode = static_cast<BodyMode>(3); }, "mode"},
         Refusal{"UnknownShape",
-                [](BodyDefinition& d) { d.shape.type = static_cast<ShapeType>(4); },
+                [](BodyDefinition& d) { d.shape.type = static_cast<ShapeType>(5); },
                 "shape.type"},
         Refusal{"MovingPlane",
                 [](BodyDefinition& d) { d.shape.type = ShapeType::plane; },

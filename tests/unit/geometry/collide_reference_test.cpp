@@ -1,5 +1,6 @@
 #include "geometry/bounds.h"
 #include "geometry/collide.h"
+#include "hull_points.h"
 #include "reference.h"
 
 #include <gtest/gtest.h>
@@ -19,8 +20,8 @@ constexpr double kMargin = kSpeculativeMargin * kLengthUlp;
 constexpr double kSlop = kLinearSlop * kLengthUlp;
 constexpr double kTolerance = 4 * kLengthUlp;
 
-Body random_body(Random& random, ShapeType type) {
-    const auto size = [&] { return random.uniform(0.05, 2); };
+Body random_body(Random& random, ShapeType type, double scale = 1) {
+    const auto size = [&] { return random.uniform(0.05, 2) * scale; };
     Body body = Body::plane();
     if (type == ShapeType::sphere) {
         body = Body::sphere(size());
@@ -28,6 +29,8 @@ Body random_body(Random& random, ShapeType type) {
         body = Body::capsule(size() / 2, size());
     } else if (type == ShapeType::box) {
         body = Body::box(size(), size(), size());
+    } else if (type == ShapeType::hull) {
+        body = Body::hull(reference::random_hull(random, 12, scale));
     }
     return body.turn(random.direction(), random.uniform(0, 3.14));
 }
@@ -48,6 +51,10 @@ struct Pair {
     Pair swapped() const { return {b, a, {-delta[0], -delta[1], -delta[2]}}; }
 };
 
+bool is_polytope(ShapeType type) {
+    return type == ShapeType::box || type == ShapeType::hull;
+}
+
 Pair random_pair(Random& random, ShapeType type_a, ShapeType type_b) {
     Pair pair{random_body(random, type_a), random_body(random, type_b), {}};
     Vec direction = random.direction();
@@ -57,10 +64,17 @@ Pair random_pair(Random& random, ShapeType type_a, ShapeType type_b) {
         direction = type_a == ShapeType::plane ? pair.a.axis(1) : pair.b.axis(1) * -1;
     }
     const bool boxes = type_a == ShapeType::box && type_b == ShapeType::box;
+    const bool polytopes = is_polytope(type_a) && is_polytope(type_b);
     while (high - low > 0.02) {
         const Vec middle = direction * ((low + high) / 2);
-        const double distance = boxes ? reference::box_axes_separation(pair.a, pair.b, middle)
-                                      : reference::distance(pair.a, pair.b, middle);
+        double distance = 0;
+        if (boxes) {
+            distance = reference::box_axes_separation(pair.a, pair.b, middle);
+        } else if (polytopes) {
+            distance = axes_separation(solid_of(pair.a, {0, 0, 0}), solid_of(pair.b, middle));
+        } else {
+            distance = reference::distance(pair.a, pair.b, middle);
+        }
         (distance > 0 ? high : low) = (low + high) / 2;
     }
     const Vec delta = direction * (low + random.uniform(-0.08, 0.06));
@@ -88,6 +102,8 @@ double thickness(const Body& body) {
         return std::min({body.extent(0), body.extent(1), body.extent(2)});
     case ShapeType::plane:
         return 1e9;
+    case ShapeType::hull:
+        return body.shape->width_least * kLengthUlp;
     default:
         return body.extent(0);
     }
@@ -99,22 +115,29 @@ protected:
     ShapeType type_b() const { return std::get<1>(GetParam()); }
     bool has(ShapeType type) const { return type_a() == type || type_b() == type; }
     bool two_boxes() const { return type_a() == ShapeType::box && type_b() == ShapeType::box; }
+    bool two_polytopes() const { return is_polytope(type_a()) && is_polytope(type_b()); }
+    bool has_polytope() const { return is_polytope(type_a()) || is_polytope(type_b()); }
     bool two_capsules() const {
         return type_a() == ShapeType::capsule && type_b() == ShapeType::capsule;
     }
-    /// Depth is only known where no box's inside is involved.
+    /// Depth is only known where no polytope's inside is involved.
     bool has_exact_depth() const {
-        return !two_boxes() && !(has(ShapeType::box) && has(ShapeType::capsule));
+        return !two_polytopes() && !(has_polytope() && has(ShapeType::capsule));
     }
     std::uint64_t seed() const {
         return 100 + 4 * static_cast<std::uint64_t>(type_a()) +
                static_cast<std::uint64_t>(type_b());
     }
-    int rounds() const { return two_boxes() ? 600 : 1500; }
+    int rounds() const {
+        if (has(ShapeType::hull)) {
+            return two_polytopes() ? 250 : 800;
+        }
+        return two_boxes() ? 600 : 1500;
+    }
 };
 
 std::string pair_name(const testing::TestParamInfo<std::tuple<ShapeType, ShapeType>>& info) {
-    constexpr const char* kNames[] = {"Sphere", "Capsule", "Box", "Plane"};
+    constexpr const char* kNames[] = {"Sphere", "Capsule", "Box", "Plane", "Hull"};
     return std::string(kNames[static_cast<int>(std::get<0>(info.param))]) +
            kNames[static_cast<int>(std::get<1>(info.param))];
 }
@@ -148,7 +171,7 @@ TEST_P(CollidePairs, SeparationIsTheDistance) {
         const Pair pair = random_pair(random, type_a(), type_b());
         const double distance = pair.distance();
         const ManifoldGeometry manifold = pair.collide_pair();
-        if (manifold.point_count == 0 || (distance < 0 && by_faces && !two_boxes())) {
+        if (manifold.point_count == 0 || (distance < 0 && by_faces && !two_polytopes())) {
             continue;
         }
         const double found = least_separation(manifold);
@@ -157,7 +180,7 @@ TEST_P(CollidePairs, SeparationIsTheDistance) {
             continue;
         }
         EXPECT_GT(found, distance - (distance < 0 ? kSlop : 0) - kTolerance);
-        if (!two_boxes()) {
+        if (!two_polytopes()) {
             EXPECT_LT(found, distance + kSlop + kTolerance);
         }
     }
@@ -191,7 +214,7 @@ TEST_P(CollidePairs, PointsLieMidwayBetweenTheSurfaces) {
                 continue;
             }
             const double tolerance =
-                has(ShapeType::capsule) && has(ShapeType::box) ? kSlop : 2 * kTolerance;
+                has(ShapeType::capsule) && has_polytope() ? kSlop : 2 * kTolerance;
             const double half = separation / 2;
             EXPECT_NEAR(pair.a.distance(from_a - normal * half), 0, tolerance);
             EXPECT_NEAR(pair.b.distance(from_b + normal * half), 0, tolerance);
@@ -203,11 +226,11 @@ TEST_P(CollidePairs, PointsStayNearTheThinnerShapeHoweverDeep) {
     Random random(seed() + 6000);
     int touching = 0;
     for (int round = 0; round < rounds(); ++round) {
-        Pair pair{random_body(random, type_a()), random_body(random, type_b()), {}};
+        // Up to 40 m around shapes of 5 cm to 2 m.
         const bool grow = random.bits() % 2 != 0;
-        for (std::int32_t& size : grow ? pair.a.size : pair.b.size) {
-            size *= 20; // up to 40 m around shapes of 5 cm to 2 m
-        }
+        Pair pair{random_body(random, type_a(), grow ? 20 : 1),
+                  random_body(random, type_b(), grow ? 1 : 20),
+                  {}};
         const Vec delta = random.direction() * random.uniform(0, 42);
         for (int axis = 0; axis < 3; ++axis) {
             pair.delta[axis] = raw_length(delta[axis]);
@@ -219,7 +242,10 @@ TEST_P(CollidePairs, PointsStayNearTheThinnerShapeHoweverDeep) {
         for (std::uint32_t index = 0; index < manifold.point_count; ++index) {
             const ManifoldPoint& point = manifold.points[index];
             const std::int32_t* local = a_is_thinner ? point.local_a : point.local_b;
-            const double radius = bounding_radius(thinner.type, thinner.size) * kLengthUlp;
+            const double radius =
+                (thinner.type == ShapeType::hull ? thinner.shape->bounding_radius
+                                                 : bounding_radius(thinner.type, thinner.size)) *
+                kLengthUlp;
             EXPECT_LT(reference::length(reference::metres(local)),
                       radius * 1.25 + kMargin / 2 + kTolerance);
         }
@@ -232,7 +258,7 @@ TEST_P(CollidePairs, MovingBAlongTheNormalByTheOverlapParts) {
     for (int round = 0; round < rounds(); ++round) {
         Pair pair = random_pair(random, type_a(), type_b());
         const ManifoldGeometry manifold = pair.collide_pair();
-        if (manifold.point_count == 0 || two_boxes()) {
+        if (manifold.point_count == 0 || two_polytopes()) {
             continue;
         }
         const double way = 0.03 - least_separation(manifold);
@@ -252,7 +278,7 @@ TEST_P(CollidePairs, SwappingThemTurnsTheResultRound) {
         const ManifoldGeometry swapped = pair.swapped().collide_pair();
         const Vec normal = reference::unit(manifold.normal);
         const Vec reverse = reference::unit(swapped.normal);
-        if (two_boxes() && manifold.point_count > 0 && swapped.point_count > 0 &&
+        if (two_polytopes() && manifold.point_count > 0 && swapped.point_count > 0 &&
             reference::length(normal + reverse) > 1e-6) {
             continue; // faces that are equally good: either may be the reference
         }
@@ -332,7 +358,12 @@ INSTANTIATE_TEST_SUITE_P(Types,
                                          std::tuple{ShapeType::capsule, ShapeType::box},
                                          std::tuple{ShapeType::plane, ShapeType::capsule},
                                          std::tuple{ShapeType::box, ShapeType::box},
-                                         std::tuple{ShapeType::plane, ShapeType::box}),
+                                         std::tuple{ShapeType::plane, ShapeType::box},
+                                         std::tuple{ShapeType::hull, ShapeType::sphere},
+                                         std::tuple{ShapeType::hull, ShapeType::capsule},
+                                         std::tuple{ShapeType::hull, ShapeType::plane},
+                                         std::tuple{ShapeType::hull, ShapeType::box},
+                                         std::tuple{ShapeType::hull, ShapeType::hull}),
                          pair_name);
 
 } // namespace

@@ -1,4 +1,5 @@
 #include "geometry/ray_cast.h"
+#include "hull_points.h"
 #include "reference.h"
 
 #include <gtest/gtest.h>
@@ -93,6 +94,19 @@ TEST(RayCast, BoxMissedBesideItsEdge) {
     EXPECT_FALSE(cast(box, {0, 0, 0}, {3, 1.5, 0}, {-3, 1.5, 0}).hit);
 }
 
+TEST(RayCast, HullOnItsFaces) {
+    const Hull hull = make_hull(reference::to_real(reference::octahedron_points(1))).value();
+    const Cast face = cast(Body::hull(hull), {5, 0, 0}, {8, 3, 3}, {2, -3, -3});
+    ASSERT_TRUE(face.hit);
+    // x + y + z = 1 along the diagonal.
+    expect_vector(face.point(), {5 + 1.0 / 3, 1.0 / 3, 1.0 / 3}, 1e-6);
+    const double third = 1 / std::sqrt(3.0);
+    expect_vector(face.normal(), {third, third, third}, 1e-6);
+    EXPECT_FALSE(cast(Body::hull(hull), {0, 0, 0}, {3, 1.01, 0}, {-3, 1.01, 0}).hit);
+    EXPECT_FALSE(cast(Body::hull(hull), {0, 0, 0}, {0, 3, 0}, {0, 1.01, 0}).hit);
+    EXPECT_TRUE(cast(Body::hull(hull), {0, 0, 0}, {0, 3, 0}, {0, 0.99, 0}).hit);
+}
+
 TEST(RayCast, CapsuleSideAndEnds) {
     const Body capsule = Body::capsule(0.5, 1);
     const Cast side = cast(capsule, {0, 0, 0}, {4, 0.9, 0}, {-4, 0.9, 0});
@@ -123,7 +137,9 @@ TEST(RayCast, PlaneFromAboveOnly) {
 }
 
 TEST(RayCast, StartingInsideOrGoingNowhereDoesNotHit) {
-    const Body bodies[] = {Body::sphere(1), Body::capsule(1, 1), Body::box(1, 1, 1)};
+    const Hull hull = make_hull(reference::to_real(reference::octahedron_points(1))).value();
+    const Body bodies[] = {
+        Body::sphere(1), Body::capsule(1, 1), Body::box(1, 1, 1), Body::hull(hull)};
     for (const Body& body : bodies) {
         EXPECT_FALSE(cast(body, {0, 0, 0}, {0.1, 0.2, 0.1}, {9, 0, 0}).hit);
         EXPECT_FALSE(cast(body, {0, 0, 0}, {3, 0, 0}, {3, 0, 0}).hit);
@@ -198,10 +214,12 @@ TEST(RayCast, AgreesWithSphereTracing) {
     for (int round = 0; round < 4000; ++round) {
         const auto size = [&] { return random.uniform(0.05, 3); };
         Body body = Body::sphere(size());
-        if (round % 3 == 1) {
+        if (round % 4 == 1) {
             body = Body::capsule(size(), size());
-        } else if (round % 3 == 2) {
+        } else if (round % 4 == 2) {
             body = Body::box(size(), size(), size());
+        } else if (round % 4 == 3) {
+            body = Body::hull(reference::random_hull(random, 10, 2));
         }
         body.turn(random.direction(), random.uniform(0, 3));
         const Vec centre = random.direction() * random.uniform(0, 100);
@@ -228,7 +246,7 @@ TEST(RayCast, AgreesWithSphereTracing) {
         }
         ++hits;
         EXPECT_NEAR(found.fraction(), expected, 1e-5);
-        EXPECT_NEAR(body.distance(found.point() - centre), 0, 1e-7);
+        EXPECT_NEAR(body.distance(found.point() - centre), 0, 2.4e-7); // a hull's faces: 2^-22 m
         EXPECT_NEAR(reference::length(found.normal()), 1, 1e-8);
         EXPECT_LT(reference::dot(found.normal(), to - from), 1e-6);
         // A small step along the normal leaves the surface by as much.

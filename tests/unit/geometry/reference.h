@@ -1,40 +1,18 @@
 #pragma once
 
 #include "geometry/collide.h"
+#include "geometry/hull.h"
 #include "geometry/rotation.h"
+#include "solid.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 
 namespace lockwind::reference {
 
 // Double-precision geometry, written apart from the code under test: what the tests compare with.
-
-struct Vec {
-    double component[3];
-
-    double operator[](int axis) const { return component[axis]; }
-};
-
-inline Vec operator+(const Vec& a, const Vec& b) {
-    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-inline Vec operator-(const Vec& a, const Vec& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-inline Vec operator*(const Vec& a, double factor) {
-    return {a[0] * factor, a[1] * factor, a[2] * factor};
-}
-inline double dot(const Vec& a, const Vec& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-inline Vec cross(const Vec& a, const Vec& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-inline double length(const Vec& a) {
-    return std::sqrt(dot(a, a));
-}
 
 inline constexpr double kLengthUlp = 1.0 / (1 << kLengthFraction);
 inline constexpr double kUnitUlp = 1.0 / (1 << kUnitFraction);
@@ -83,6 +61,8 @@ struct Body {
     ShapeType type = ShapeType::sphere;
     std::int32_t size[3] = {0, 0, 0};
     std::int32_t rotation[9] = {kUnitOne, 0, 0, 0, kUnitOne, 0, 0, 0, kUnitOne};
+    std::shared_ptr<const Hull> shape;  // of a hull
+    std::shared_ptr<const Solid> solid; // of a hull, in its own frame
 
     static Body sphere(double radius) { return make(ShapeType::sphere, radius, 0, 0); }
     static Body capsule(double radius, double half) {
@@ -90,6 +70,16 @@ struct Body {
     }
     static Body box(double x, double y, double z) { return make(ShapeType::box, x, y, z); }
     static Body plane() { return make(ShapeType::plane, 0, 0, 0); }
+    static Body hull(const Hull& of) {
+        Body body = make(ShapeType::hull, 0, 0, 0);
+        std::vector<Vec> vertices;
+        for (std::uint32_t vertex = 0; vertex < of.vertex_count; ++vertex) {
+            vertices.push_back(metres(of.vertices[vertex].place));
+        }
+        body.shape = std::make_shared<const Hull>(of);
+        body.solid = std::make_shared<const Solid>(std::move(vertices));
+        return body;
+    }
 
     Body& turn(const Vec& axis, double angle) {
         if (type == ShapeType::sphere) {
@@ -104,7 +94,9 @@ struct Body {
         rotation_matrix(orientation, rotation);
         return *this;
     }
-    ShapeInstance instance() const { return {type, {size[0], size[1], size[2]}, rotation}; }
+    ShapeInstance instance() const {
+        return {type, {size[0], size[1], size[2]}, rotation, shape.get()};
+    }
     double extent(int axis) const { return size[axis] * kLengthUlp; }
     Vec axis(int column) const {
         return {rotation[column] * kUnitUlp,
@@ -155,6 +147,8 @@ inline double Body::distance(const Vec& from_centre) const {
         return box_distance({extent(0), extent(1), extent(2)}, local);
     case ShapeType::plane:
         return local[1];
+    case ShapeType::hull:
+        return solid->distance(local);
     }
     return 0;
 }
@@ -254,11 +248,56 @@ inline double box_segment_distance(const Body& box, const Body& capsule, const V
     });
 }
 
+/// A box or hull in the world.
+inline Solid solid_of(const Body& body, const Vec& centre) {
+    std::vector<Vec> vertices;
+    if (body.type == ShapeType::hull) {
+        for (const Vec& vertex : body.solid->vertices) {
+            vertices.push_back(centre + body.to_world(vertex));
+        }
+    } else {
+        for (int corner = 0; corner < 8; ++corner) {
+            const auto sign = [corner](int bit) { return (corner >> bit & 1) != 0 ? 1.0 : -1.0; };
+            vertices.push_back(centre + body.to_world({sign(0) * body.extent(0),
+                                                       sign(1) * body.extent(1),
+                                                       sign(2) * body.extent(2)}));
+        }
+    }
+    return Solid(std::move(vertices));
+}
+
+/// Of a hull and another shape.
+inline double hull_distance(const Body& hull, const Body& other, const Vec& delta) {
+    switch (other.type) {
+    case ShapeType::sphere:
+        return hull.distance(delta) - other.extent(0);
+    case ShapeType::capsule:
+        return minimum(-other.extent(1),
+                       other.extent(1),
+                       [&](double along) {
+                           return std::max(0.0, hull.distance(delta + other.axis(1) * along));
+                       }) -
+               other.extent(0);
+    case ShapeType::plane: {
+        double lowest = 1e9;
+        for (const Vec& vertex : hull.solid->vertices) {
+            lowest = std::min(lowest, dot(other.axis(1), hull.to_world(vertex) - delta));
+        }
+        return lowest;
+    }
+    default:
+        return distance(solid_of(hull, {0, 0, 0}), solid_of(other, delta));
+    }
+}
+
 /// Surface distance of two shapes; of boxes and capsules across boxes, only a sign where they
 /// overlap.
 inline double distance(const Body& a, const Body& b, const Vec& delta) {
     if (a.type < b.type) {
         return distance(b, a, delta * -1);
+    }
+    if (a.type == ShapeType::hull) {
+        return hull_distance(a, b, delta);
     }
     if (a.type == ShapeType::box && b.type == ShapeType::box) {
         return boxes_distance(a, b, delta);

@@ -36,14 +36,14 @@ TEST(SceneReadme, ExamplesParse) {
     for (const std::string& block : blocks) {
         const Result<WorldDefinition> world = parse_scene(block, "README.md", {4, 1, 0});
         ASSERT_TRUE(world.ok()) << world.error().message;
-        EXPECT_EQ(world.value().bodies.size(), 2U + 15U + 4U);
+        EXPECT_EQ(world.value().bodies.size(), 3U + 15U + 4U);
         EXPECT_EQ(world.value().pods[0].thrust_acceleration, Real(30));
     }
 }
 
 TEST(SceneReadme, TellsTheBodyCountsOfBuiltInScenes) {
     const std::string text = readme();
-    for (const char* row : {"arena", "swarm_small", "empty", "pyramid_210"}) {
+    for (const char* row : {"arena", "swarm_small", "empty", "pyramid_210", "hulls"}) {
         const Result<WorldDefinition> world = load_scene(row);
         ASSERT_TRUE(world.ok());
         const std::string line =

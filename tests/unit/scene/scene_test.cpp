@@ -160,6 +160,61 @@ TEST(Scene, MaterialsGiveDefaultsThatABodyOverrides) {
     EXPECT_EQ(world.bodies.at(1).friction, Real(0.3));
 }
 
+const std::string kGem = "hull { name: \"gem\" point { x: 1 } point { x: -1 } point { y: 1 } "
+                         "point { y: -1 } point { z: 1 } point { z: -1 } }\n";
+
+TEST(Scene, BodiesShareHullsByName) {
+    const WorldDefinition world =
+        parse("name: \"t\" body { hull: \"gem\" } body { hull: \"rod\" mass: 2 } "
+              "body { hull: \"gem\" position { x: 5 } } " +
+              kGem +
+              "hull { name: \"rod\" point { x: 0.5 y: 0.25 } point { x: -0.5 } point { y: -0.5 } "
+              "point { z: 0.5 } point { z: -0.125 } }");
+    ASSERT_EQ(world.hulls.size(), 2U);
+    EXPECT_EQ(world.hulls[0].points.size(), 6U);
+    ASSERT_EQ(world.hulls[1].points.size(), 5U);
+    EXPECT_EQ(world.hulls[1].points[0], (Vec3{0.5, 0.25, 0}));
+    EXPECT_EQ(world.hulls[1].points[4], (Vec3{0, 0, -0.125}));
+    ASSERT_EQ(world.bodies.size(), 3U);
+    for (const BodyDefinition& body : world.bodies) {
+        EXPECT_EQ(body.shape.type, ShapeType::hull);
+    }
+    EXPECT_EQ(world.bodies[0].shape.hull, 0U);
+    EXPECT_EQ(world.bodies[1].shape.hull, 1U);
+    EXPECT_EQ(world.bodies[2].shape.hull, 0U);
+}
+
+TEST(SceneErrors, NamePlaceAndFaultOfHulls) {
+    const auto hull_error = [](const std::string& hull) {
+        return error_of("name: \"t\"\n" + hull + "\n");
+    };
+    EXPECT_EQ(hull_error("hull { point { x: 1 } }"),
+              "t.textproto:2:1: hull[0].name is missing; bodies name their hull");
+    EXPECT_EQ(hull_error(kGem + kGem),
+              "t.textproto:3:8: hull[1].name \"gem\" is the name of two hulls");
+    EXPECT_EQ(hull_error("hull { name: \"a\"\n  point { x: 1 }\n  point { y: 300 } }"),
+              "t.textproto:4:11: hull[0].point[1].y is 300 m; give -250 .. 250 m");
+    EXPECT_EQ(
+        hull_error("hull { name: \"a\" point { x: 1 } point { y: 1 } point { z: 1 } }"),
+        "t.textproto:2:1: hull[0] \"a\" has 3 different points; give at least 4 that stand out "
+        "of one plane");
+    EXPECT_EQ(hull_error("hull { name: \"a\" point { x: 1 } point { y: 1 } point { z: 0 } "
+                         "point { x: 1 y: 1 } }"),
+              "t.textproto:2:1: hull[0] \"a\" is flat: its points need to stand out of one plane");
+    EXPECT_EQ(hull_error(kGem + "body { hull: \"gen\" }"),
+              "t.textproto:3:8: body[0].hull \"gen\" is not defined; there is: gem");
+    EXPECT_EQ(hull_error("body { hull: \"gen\" }"),
+              "t.textproto:2:8: body[0].hull \"gen\" is not defined; the scene has no hulls");
+    EXPECT_EQ(hull_error(kGem + "body { hull: \"gem\" density: 0.01 mode: dynamic }"),
+              "(no error)");
+    EXPECT_EQ(
+        hull_error("hull { name: \"a\" point { x: 0.02 } point { x: -0.02 } point { y: 0.02 } "
+                   "point { y: -0.02 } point { z: 0.02 } point { z: -0.02 } }\n"
+                   "body { hull: \"a\" density: 1 }"),
+        "t.textproto:3:18: body[0].density makes the body weigh 1.07e-05 kg; a dynamic body "
+        "weighs 0.001 .. 1000000 kg");
+}
+
 TEST(Scene, NumbersBodiesInTheOrderOfTheText) {
     const WorldDefinition world =
         parse(kFloor + "body { sphere { radius: 1 } position { y: 1 } "
@@ -251,7 +306,7 @@ TEST(SceneErrors, NameFieldAndPlaceInSettings) {
 
 TEST(SceneErrors, RefuseBodiesThatCannotBe) {
     EXPECT_EQ(body_error("body { mass: 1 }"),
-              "t.textproto:2:1: body[0] has no shape; give sphere, capsule, box or plane");
+              "t.textproto:2:1: body[0] has no shape; give sphere, capsule, box, hull or plane");
     EXPECT_EQ(body_error("body { box {} }"), "t.textproto:2:8: body[0].box has no half_extents");
     EXPECT_EQ(body_error("body { plane {} }"),
               "t.textproto:2:8: body[0].plane has no end and cannot move; add `mode: fixed`");
@@ -325,7 +380,7 @@ TEST(SceneErrors, RefusePodsThatCannotBe) {
                        "sphere { radius: 1 } } }"),
               "t.textproto:2:45: pods.body.mode must be dynamic: a pod is driven by forces");
     EXPECT_EQ(error_of("name: \"t\"\npods { players_max: 1 ring_radius: 3 }"),
-              "t.textproto:2:1: pods.body has no shape; give sphere, capsule, box or plane");
+              "t.textproto:2:1: pods.body has no shape; give sphere, capsule, box, hull or plane");
     EXPECT_EQ(error_of("name: \"t\"\npods { players_max: 1 ring_radius: 3 body { sphere { radius: "
                        "1 } heap { count: 2 pitch: 1 } } }"),
               "t.textproto:2:38: pods.body is placed and turned by the ring: it has no "

@@ -14,7 +14,7 @@ namespace {
 
 /// A world in full swing, with a joint of each kind.
 WorldPtr busy_world(int ticks = 100) {
-    WorldPtr world = make_world(scene_with_joints(40, 2));
+    WorldPtr world = make_world(scene_of_all(40, 2));
     for (int tick = 0; tick < ticks; ++tick) {
         step_busy(*world);
     }
@@ -27,8 +27,8 @@ Row* rows(World& world, std::uint32_t section) {
 }
 
 TEST(Snapshot, RestoringItsOwnGoesOnLikeLoadingIt) {
-    const WorldPtr world = make_world(busy_scene(40, 2));
-    const WorldPtr loaded = make_world(busy_scene(40, 2));
+    const WorldPtr world = make_world(scene_of_all(40, 2));
+    const WorldPtr loaded = make_world(scene_of_all(40, 2));
     for (int tick = 0; tick < 60; ++tick) {
         step_busy(*world);
     }
@@ -143,13 +143,13 @@ struct Damage {
 
 /// Puts a damaged state into a snapshot and expects it refused, and the world as it was.
 void expect_refused(const std::vector<std::byte>& sound, const Damage& damage) {
-    const WorldPtr source = make_world(busy_scene(40, 2));
+    const WorldPtr source = make_world(scene_of_all(40, 2));
     ASSERT_TRUE(source->load(sound).ok());
     damage.apply(*source);
     EXPECT_FALSE(source->check().ok()) << damage.name;
     std::vector<std::byte> bytes;
     source->save(bytes);
-    const WorldPtr target = make_world(busy_scene(40, 2));
+    const WorldPtr target = make_world(scene_of_all(40, 2));
     const std::uint64_t hash = target->state_hash();
     const Status status = target->load(bytes);
     EXPECT_FALSE(status.ok()) << damage.name;
