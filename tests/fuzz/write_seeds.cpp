@@ -1,12 +1,13 @@
 #include "codec/codec.h"
 #include "tests/support/code_scenes.h"
+#include "tests/support/dice.h"
 #include "tests/unit/codec/sample_messages.h"
 
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 
-// Writes the seeds that are made in code: messages and states. The others are files of a match.
+// Writes the seeds that are made in code: messages, states and draws of calls. The others are files of a match.
 
 namespace {
 
@@ -38,6 +39,15 @@ int main(int argc, char** argv) {
             write(corpus / "state" / ("tick-" + std::to_string(tick)), bytes);
         }
         test::step_busy(*world);
+    }
+    std::filesystem::create_directories(corpus / "calls");
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        testing::Dice dice(seed);
+        std::vector<std::byte> bytes(200 * seed);
+        for (std::byte& byte : bytes) {
+            byte = static_cast<std::byte>(dice.below(256));
+        }
+        write(corpus / "calls" / ("draws-" + std::to_string(seed)), bytes);
     }
     return 0;
 }
