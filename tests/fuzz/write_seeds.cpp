@@ -7,7 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
-// Writes the seeds that are made in code: messages, states and draws of calls. The others are files of a match.
+// Writes the seeds that are made in code: messages, states and draws of calls. The others are files
+// of a match.
 
 namespace {
 

@@ -7,6 +7,7 @@ namespace lockwind {
 /// Of the energy along the impulses' direction, a parabola, where its lowest point is.
 std::int64_t JointSolver::Work::factor() const {
     constexpr std::int64_t kWhole = std::int64_t{1} << 30;
+    constexpr std::int64_t kMost = std::int64_t{1} << 61;
     Int128 part = needed;
     Int128 whole = raw_add(needed, left);
     if (left <= 0) {
@@ -15,7 +16,7 @@ std::int64_t JointSolver::Work::factor() const {
     if (needed <= 0) {
         return 0;
     }
-    while (whole >= Int128(std::int64_t{1} << 61)) {
+    while (whole >= Int128(kMost)) {
         part = round_shift(part, 1);
         whole = round_shift(whole, 1);
     }

@@ -78,6 +78,7 @@ public:
 private:
     std::optional<Error> place_vertices();
     void make_faces();
+    std::uint8_t edge_between(std::uint8_t from, std::uint8_t to, std::uint8_t face);
     void make_edges();
     std::optional<Error> measure();
 
@@ -145,6 +146,26 @@ void HullMaker::make_faces() {
     }
 }
 
+/// Index of the edge from `from` to `to` as the corner of this face; made if no face had it yet.
+std::uint8_t HullMaker::edge_between(std::uint8_t from, std::uint8_t to, std::uint8_t face) {
+    const auto end = hull_.edges.begin() + hull_.edge_count;
+    const auto edge = std::find_if(hull_.edges.begin(), end, [&](const HullEdge& known) {
+        return known.from == to && known.to == from;
+    });
+    if (edge != end) {
+        edge->right = face;
+    } else {
+        ++hull_.edge_count;
+        *edge = {{}, from, to, face, 0};
+        std::array<Int128, 3> way{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            way[axis] = std::int64_t{turned_.vertices[to][axis]} - turned_.vertices[from][axis];
+        }
+        unit_of(way, edge->direction);
+    }
+    return static_cast<std::uint8_t>(edge - hull_.edges.begin());
+}
+
 /// Edges in the order of the first face that has them.
 void HullMaker::make_edges() {
     for (std::uint32_t index = 0; index < hull_.face_count; ++index) {
@@ -152,24 +173,8 @@ void HullMaker::make_edges() {
         for (std::size_t corner = 0; corner < corners.size(); ++corner) {
             const auto from = static_cast<std::uint8_t>(corners[corner]);
             const auto to = static_cast<std::uint8_t>(corners[(corner + 1) % corners.size()]);
-            const auto end = hull_.edges.begin() + hull_.edge_count;
-            auto edge = std::find_if(hull_.edges.begin(), end, [&](const HullEdge& known) {
-                return known.from == to && known.to == from;
-            });
-            if (edge == end) {
-                ++hull_.edge_count;
-                *edge = {{}, from, to, static_cast<std::uint8_t>(index), 0};
-                std::array<Int128, 3> way{};
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    way[axis] =
-                        std::int64_t{turned_.vertices[to][axis]} - turned_.vertices[from][axis];
-                }
-                unit_of(way, edge->direction);
-            } else {
-                edge->right = static_cast<std::uint8_t>(index);
-            }
             hull_.corners[hull_.faces[index].first_corner + corner].edge =
-                static_cast<std::uint8_t>(edge - hull_.edges.begin());
+                edge_between(from, to, static_cast<std::uint8_t>(index));
         }
     }
 }

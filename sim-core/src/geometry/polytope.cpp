@@ -15,11 +15,32 @@ namespace {
 struct BoxTopology {
     std::array<HullEdge, 12> edges{};
     std::array<HullCorner, 24> corners{};
+    std::uint8_t edge_count = 0;
+
+    /// Index of the edge from `from` to `to` as the corner of this face; made if no face had it
+    /// yet.
+    constexpr std::uint8_t edge_between(std::uint8_t from, std::uint8_t to, std::uint8_t face) {
+        for (std::uint8_t edge = 0; edge < edge_count; ++edge) {
+            if (edges[edge].from == to && edges[edge].to == from) {
+                edges[edge].right = face;
+                return edge;
+            }
+        }
+        HullEdge& made = edges[edge_count];
+        made.from = from;
+        made.to = to;
+        made.left = face;
+        for (std::size_t component = 0; component < 3; ++component) {
+            const bool along = ((from ^ to) >> component & 1) != 0;
+            const bool forth = (to >> component & 1) != 0;
+            made.direction[component] = along ? (forth ? kUnitOne : -kUnitOne) : 0;
+        }
+        return edge_count++;
+    }
 };
 
 constexpr BoxTopology make_box_topology() {
     BoxTopology box;
-    std::uint8_t edge_count = 0;
     for (std::size_t face = 0; face < 6; ++face) {
         const std::size_t axis = face / 2;
         const bool positive = face % 2 != 0;
@@ -34,25 +55,8 @@ constexpr BoxTopology make_box_topology() {
             };
             const std::uint8_t from = at(corner);
             const std::uint8_t to = at(next);
-            std::uint8_t edge = 0;
-            while (edge < edge_count &&
-                   (box.edges[edge].from != to || box.edges[edge].to != from)) {
-                ++edge;
-            }
-            if (edge == edge_count) {
-                HullEdge& made = box.edges[edge_count++];
-                made.from = from;
-                made.to = to;
-                made.left = static_cast<std::uint8_t>(face);
-                for (std::size_t component = 0; component < 3; ++component) {
-                    const bool along = ((from ^ to) >> component & 1) != 0;
-                    const bool forth = (to >> component & 1) != 0;
-                    made.direction[component] = along ? (forth ? kUnitOne : -kUnitOne) : 0;
-                }
-            } else {
-                box.edges[edge].right = static_cast<std::uint8_t>(face);
-            }
-            box.corners[4 * face + corner] = {from, edge};
+            box.corners[4 * face + corner] = {
+                from, box.edge_between(from, to, static_cast<std::uint8_t>(face))};
         }
     }
     return box;
