@@ -215,12 +215,25 @@ public:
         case 8:
             world_.drop_derived();
             return true;
+        case 9:
+            require_message(world_.redefine_body(draw_redefinition()));
+            return true;
         default:
             return step(1 + kind % 4);
         }
     }
 
 private:
+    /// Of a body that there is, in half of all cases of its own shape.
+    BodyDefinition draw_redefinition() {
+        BodyDefinition definition = draw_body(draws_);
+        const BodyView view = world_.body_at(draws_.below(world_.body_count()));
+        definition.id = view.id;
+        if (draws_.flag()) {
+            definition.shape = view.shape;
+        }
+        return definition;
+    }
     bool push() {
         draws_.begin_definition();
         const BodyId id = draws_.below(kIds);
@@ -242,6 +255,9 @@ private:
     }
     bool look() {
         draws_.begin_definition();
+        for (const ContactView& contact : world_.contacts()) {
+            LOCKWIND_ASSERT(contact.body_a < contact.body_b && contact.point_count > 0);
+        }
         const Vec3 from = draws_.vector();
         if (const auto hit = world_.ray_cast(from, draws_.vector()); hit.has_value()) {
             LOCKWIND_ASSERT(world_.body(hit->body).has_value());

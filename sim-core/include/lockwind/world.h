@@ -6,6 +6,7 @@
 #include "lockwind/simd.h"
 #include "lockwind/world_definition.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -40,6 +41,21 @@ struct JointView {
     BodyId body_b;
     Real motor_speed; // m/s or rad/s
     Vec3 target;      // m, of a grab
+};
+
+/// What two bodies press on each other, since contact_begin until contact_end.
+struct ContactView {
+    struct Point {
+        Vec3 position;     // m, halfway between the surfaces
+        Real separation;   // m; negative where they overlap
+        Real normal_force; // N, mean of the last substep; 0 of a sensor
+    };
+    BodyId body_a; // below body_b
+    BodyId body_b;
+    bool sensor;
+    Vec3 normal; // unit, from a to b
+    std::uint32_t point_count;
+    std::array<Point, 4> points; // those past point_count are 0
 };
 
 struct RayHit {
@@ -93,6 +109,8 @@ public:
     /// The body that slot's pod is; nothing where it is gone.
     std::optional<BodyView> pod(Slot slot) const;
     std::uint32_t score(Slot slot) const;
+    /// Touching pairs as the last step left them, those of sensors too, by (body_a, body_b).
+    std::vector<ContactView> contacts() const;
 
     /// Between steps, all immediate; SI units, world frame. False where there is no such dynamic
     /// body. None of these makes events.
@@ -102,6 +120,10 @@ public:
     /// An id that was ever used must not come back: only living bodies and pods are checked.
     Status create_body(const BodyDefinition& definition);
     bool destroy_body(BodyId id); // and its joints
+    /// Makes a living body anew from a definition with its id and shape, joints kept: hands a
+    /// kinematic body over to the solver and back, or changes its mass, material or layer. What it
+    /// touches begins anew. An Error changes nothing.
+    Status redefine_body(const BodyDefinition& definition);
 
     /// Between steps, as the calls above. An id that was ever used must not come back.
     Status create_joint(const JointDefinition& definition);

@@ -157,6 +157,15 @@ void remap_joints(const DynamicsTables& tables, std::span<const BodyRow> new_row
     joints.set_count(kept);
 }
 
+/// Free slots at the end are not rows.
+void trim_manifolds(const Table<Manifold>& manifolds) {
+    std::uint32_t live = manifolds.count();
+    while (live > 0 && manifolds[live - 1].point_count == 0) {
+        --live;
+    }
+    manifolds.set_count(live);
+}
+
 } // namespace
 
 void wake_joined(const DynamicsTables& tables, const Joint& joint) {
@@ -197,11 +206,23 @@ void remap_rows(const DynamicsTables& tables, std::span<const BodyRow> new_row_o
         }
     }
     tables.pairs.set_count(kept);
-    std::uint32_t live = tables.manifolds.count();
-    while (live > 0 && tables.manifolds[live - 1].point_count == 0) {
-        --live;
+    trim_manifolds(tables.manifolds);
+}
+
+void drop_contacts(const DynamicsTables& tables, BodyRow row) {
+    std::uint32_t kept = 0;
+    for (std::uint32_t index = 0; index < tables.pairs.count(); ++index) {
+        const Pair pair = tables.pairs[index];
+        if (pair.row_a != row && pair.row_b != row) {
+            tables.pairs[kept++] = pair;
+        } else if (pair.point_count != 0) {
+            tables.manifolds[pair.manifold] = Manifold{};
+            wake_dynamic(tables, pair.row_a);
+            wake_dynamic(tables, pair.row_b);
+        }
     }
-    tables.manifolds.set_count(live);
+    tables.pairs.set_count(kept);
+    trim_manifolds(tables.manifolds);
 }
 
 } // namespace lockwind

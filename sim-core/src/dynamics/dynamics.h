@@ -123,4 +123,7 @@ void wake_joined(const DynamicsTables& tables, const Joint& joint);
 /// none. What touched or was joined to a row that goes wakes.
 void remap_rows(const DynamicsTables& tables, std::span<const BodyRow> new_row_of);
 
+/// Removes the row's pairs, frees their manifolds and wakes what it touched.
+void drop_contacts(const DynamicsTables& tables, BodyRow row);
+
 } // namespace lockwind

@@ -1,0 +1,74 @@
+#include "dynamics/make_body.h"
+#include "dynamics/pairing.h"
+#include "dynamics/solver_format.h"
+#include "systems/motion.h"
+#include "world/impl.h"
+
+#include <algorithm>
+
+namespace lockwind {
+
+namespace {
+
+/// A point of the body, m, from its frame.
+Vec3 place_of(const BodyMotion& motion, const std::int32_t local[3], bool turns) {
+    const Vec3 arm{convert<Real>(Length::from_raw(local[0])),
+                   convert<Real>(Length::from_raw(local[1])),
+                   convert<Real>(Length::from_raw(local[2]))};
+    return read_position(motion) + (turns ? rotate(read_orientation(motion), arm) : arm);
+}
+
+/// N from an impulse x (1/m_a + 1/m_b) of one substep.
+Real force_of(std::int32_t impulse, std::int64_t inverse_mass, std::int64_t substep_rate) {
+    if (inverse_mass <= 0) {
+        return 0;
+    }
+    // Q11.20 x 2^52 / Q24.40 = Q.32
+    return Real::from_raw(
+        multiply_divide(std::int64_t{impulse} * substep_rate, std::int64_t{1} << 52, inverse_mass));
+}
+
+ContactView view_of(const DynamicsTables& tables, const Pair& pair, std::int64_t substep_rate) {
+    const Manifold& manifold = tables.manifolds[pair.manifold];
+    const BodyMotion& a = tables.motion[pair.row_a];
+    const BodyMotion& b = tables.motion[pair.row_b];
+    const BodyProperties& of_a = tables.properties[pair.row_a];
+    const BodyProperties& of_b = tables.properties[pair.row_b];
+    ContactView view{};
+    view.body_a = a.id;
+    view.body_b = b.id;
+    view.sensor = is_sensing(of_a, of_b);
+    view.normal = {convert<Real>(Unit::from_raw(manifold.normal[0])),
+                   convert<Real>(Unit::from_raw(manifold.normal[1])),
+                   convert<Real>(Unit::from_raw(manifold.normal[2]))};
+    view.point_count = pair.point_count;
+    constexpr auto kSphere = static_cast<std::uint8_t>(ShapeType::sphere);
+    for (std::uint32_t index = 0; index < pair.point_count; ++index) {
+        const Vec3 of_a_now = place_of(a, manifold.local_a + 3 * index, of_a.shape != kSphere);
+        const Vec3 of_b_now = place_of(b, manifold.local_b + 3 * index, of_b.shape != kSphere);
+        ContactView::Point& point = view.points[index];
+        point.position = (of_a_now + of_b_now) / Real(2);
+        point.separation = convert<Real>(Length::from_raw(manifold.separation[index])) +
+                           dot(view.normal, of_b_now - of_a_now);
+        point.normal_force = force_of(
+            manifold.normal_impulse[index], of_a.inverse_mass + of_b.inverse_mass, substep_rate);
+    }
+    return view;
+}
+
+} // namespace
+
+std::vector<ContactView> World::contacts() const {
+    const DynamicsTables tables = impl_->tables();
+    const std::int64_t substep_rate =
+        std::int64_t{impl_->settings.tick_rate_hz} * impl_->settings.substeps;
+    std::vector<ContactView> views;
+    for (const Pair& pair : tables.pairs.rows()) {
+        if (pair.point_count != 0) {
+            views.push_back(view_of(tables, pair, substep_rate));
+        }
+    }
+    return views;
+}
+
+} // namespace lockwind
