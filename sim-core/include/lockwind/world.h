@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lockwind/event.h"
+#include "lockwind/query.h"
 #include "lockwind/result.h"
 #include "lockwind/schema.h"
 #include "lockwind/simd.h"
@@ -56,13 +57,6 @@ struct ContactView {
     Vec3 normal; // unit, from a to b
     std::uint32_t point_count;
     std::array<Point, 4> points; // those past point_count are 0
-};
-
-struct RayHit {
-    BodyId body;
-    Real fraction; // of the ray, 0 .. 1
-    Vec3 point;    // m
-    Vec3 normal;   // unit, out of the body
 };
 
 /// Counts of a state, for progress, metrics and the vacuity checks of tests.
@@ -134,8 +128,38 @@ public:
     /// m/s or rad/s, held to 1000. False where there is no such joint with a motor.
     bool set_joint_motor(JointId id, Real speed);
 
-    /// First hit on the segment from + t * (to - from); ties go to the lower id.
-    std::optional<RayHit> ray_cast(const Vec3& from, const Vec3& to) const;
+    /// Queries: of the bodies as they stand, in fixed point; they change no bit of the state. Ties
+    /// go to the lower id. Each visits few bodies, by a tree of bounds that the first query after a
+    /// change builds: so no two threads may query one world at once. Coordinates beyond 65,536 m
+    /// find nothing. A world that is moved as a whole finds the same bits relative to itself.
+    ///
+    /// First hit on the segment from + t * (to - from); none of a body it starts in, nor without
+    /// length.
+    std::optional<RayHit>
+    ray_cast(const Vec3& from, const Vec3& to, const QueryFilter& filter = {}) const;
+    /// The first hit of each body on it, by fraction, then id.
+    std::vector<RayHit>
+    ray_cast_all(const Vec3& from, const Vec3& to, const QueryFilter& filter = {}) const;
+    /// Whether overlap and shape_cast take a shape: any that a kinematic body may have. The Error
+    /// says why not; they assert it.
+    Status check_query_shape(const ShapeDefinition& shape) const;
+    /// Bodies that touch or overlap a shape (error 2 um), by id.
+    std::vector<BodyId> overlap(const ShapeDefinition& shape,
+                                const Vec3& position,
+                                const RealQuat& orientation,
+                                const QueryFilter& filter = {}) const;
+    /// Nearest body within distance_max, m; a body that the point lies in is at 0. Error 2 um, and
+    /// 2^-26 of the distance and size where these are beyond 128 m.
+    std::optional<ClosestPoint>
+    closest_point(const Vec3& point, Real distance_max, const QueryFilter& filter = {}) const;
+    /// First body that the shape, moved along `translation` without turning, comes within 15 um of
+    /// while nearing it; moved by the fraction, it overlaps nothing. Bodies that it overlaps at the
+    /// start count at fraction 0. None is passed, however thin or fast.
+    std::optional<ShapeCastHit> shape_cast(const ShapeDefinition& shape,
+                                           const Vec3& position,
+                                           const RealQuat& orientation,
+                                           const Vec3& translation,
+                                           const QueryFilter& filter = {}) const;
 
     /// See Simulation.
     std::uint64_t state_hash() const;

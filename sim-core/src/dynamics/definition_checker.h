@@ -18,6 +18,7 @@ class DefinitionChecker {
 public:
     DefinitionChecker(const char* thing, std::uint64_t id)
         : subject_(std::string(thing) + " " + std::to_string(id)) {}
+    explicit DefinitionChecker(const char* thing) : subject_(thing) {}
 
     bool failed() const { return error_.has_value(); }
     const Error& error() const { return *error_; }

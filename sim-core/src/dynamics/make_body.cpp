@@ -301,22 +301,28 @@ Vec3 principal_centre(const Hull& hull) {
     return {length(0), length(1), length(2)};
 }
 
-void fill_place(const BodyDefinition& definition,
+void fill_place(const Vec3& given_position,
+                const RealQuat& given_orientation,
                 const Hull* hull,
-                BodyMotion& motion,
-                DefinitionChecker& checker) {
-    RealQuat orientation = definition.orientation;
-    Vec3 position = definition.position;
+                BodyMotion& motion) {
+    RealQuat orientation = given_orientation;
+    Vec3 position = given_position;
     if (hull != nullptr) {
         const RealQuat given = normalized(orientation);
         orientation = given * principal_turn(*hull);
         position += rotate(given, principal_centre(*hull));
-        checker.vector_range("position of the centre of mass", position, kBodyPositionMax, " m");
     }
     motion.position[0] = position.x.raw();
     motion.position[1] = position.y.raw();
     motion.position[2] = position.z.raw();
     fill_orientation(orientation, motion);
+}
+
+void check_place(const BodyMotion& motion, DefinitionChecker& checker) {
+    const Vec3 position{Real::from_raw(motion.position[0]),
+                        Real::from_raw(motion.position[1]),
+                        Real::from_raw(motion.position[2])};
+    checker.vector_range("position of the centre of mass", position, kBodyPositionMax, " m");
 }
 
 void fill_velocities(const BodyDefinition& definition,
@@ -378,7 +384,8 @@ Status make_body(const BodyDefinition& definition,
     fill_build(definition, hull, new_properties, checker);
 
     new_motion.id = definition.id;
-    fill_place(definition, hull, new_motion, checker);
+    fill_place(definition.position, definition.orientation, hull, new_motion);
+    check_place(new_motion, checker);
     fill_velocities(definition, new_properties, new_motion, checker);
     for (int axis = 0; axis < 3; ++axis) {
         new_motion.fat_bounds[axis] = 1;
@@ -389,6 +396,35 @@ Status make_body(const BodyDefinition& definition,
     motion = new_motion;
     properties = new_properties;
     return Success{};
+}
+
+Status check_query_shape(const ShapeDefinition& shape, const ShapeLibrary& shapes) {
+    DefinitionChecker checker("query");
+    check_shape(shape, BodyMode::kinematic, shapes, checker);
+    if (!checker.failed()) {
+        BodyProperties properties{};
+        fill_size(shape, hull_of(shape, shapes), properties);
+        checker.range("shape's bounding radius",
+                      convert<Real>(Length::from_raw(properties.bounding_radius)),
+                      0,
+                      kMovingRadiusMax,
+                      " m");
+    }
+    return checker.failed() ? Status(checker.error()) : Status(Success{});
+}
+
+void make_query_shape(const ShapeDefinition& shape,
+                      const Vec3& position,
+                      const RealQuat& orientation,
+                      const ShapeLibrary& shapes,
+                      BodyMotion& motion,
+                      BodyProperties& properties) {
+    const Hull* hull = hull_of(shape, shapes);
+    motion = {};
+    properties = {};
+    properties.shape = static_cast<std::uint8_t>(shape.type);
+    fill_size(shape, hull, properties);
+    fill_place(position, normalized(orientation), hull, motion);
 }
 
 BodyReading

@@ -27,6 +27,19 @@ Status make_body(const BodyDefinition& definition,
                  BodyMotion& motion,
                  BodyProperties& properties);
 
+/// Whether a query may move a shape about: one that a kinematic body may have. No allocation but
+/// for the Error, which starts "query: ".
+Status check_query_shape(const ShapeDefinition& shape, const ShapeLibrary& shapes);
+
+/// Place, orientation, shape and size of a shape that check_query_shape takes, as those of a body;
+/// all else is 0. An orientation of 0 is the identity. No allocation.
+void make_query_shape(const ShapeDefinition& shape,
+                      const Vec3& position,
+                      const RealQuat& orientation,
+                      const ShapeLibrary& shapes,
+                      BodyMotion& motion,
+                      BodyProperties& properties);
+
 /// Rows read back at the API's scale, in the frame of the definition: of a hull, the one that its
 /// points were given in.
 struct BodyReading {

@@ -7,6 +7,7 @@
 #include "systems/pod.h"
 #include "systems/spawn.h"
 #include "world/event_log.h"
+#include "world/query_index.h"
 #include "world/state.h"
 
 #include "lockwind/world.h"
@@ -50,6 +51,7 @@ struct World::Impl {
     PodSystem pods;
     Spawner spawner;
     EventLog events;
+    QueryIndex query_index;
     StepFault fault = StepFault::none;
     BodyId fault_body = 0;                   // that left the bounds
     std::vector<std::uint8_t> manifold_seen; // by row of section "manifold", while checking a load

@@ -1,6 +1,4 @@
 #include "dynamics/make_body.h"
-#include "geometry/ray_cast.h"
-#include "geometry/rotation.h"
 #include "systems/motion.h"
 #include "world/impl.h"
 
@@ -184,6 +182,7 @@ Status World::create_body(const BodyDefinition& definition) {
         return Error{"body " + std::to_string(definition.id) +
                      ": position lies outside of settings.bounds"};
     }
+    impl_->query_index.drop();
     impl_->spawner.create(body);
     if (impl_->spawner.apply(tables) != StepFault::none) {
         return Error{"body " + std::to_string(definition.id) + ": settings.body_capacity of " +
@@ -198,36 +197,10 @@ bool World::destroy_body(BodyId id) {
     if (row == kNoIndex) {
         return false;
     }
+    impl_->query_index.drop();
     impl_->spawner.destroy(row);
     impl_->spawner.apply(tables);
     return true;
-}
-
-std::optional<RayHit> World::ray_cast(const Vec3& from, const Vec3& to) const {
-    const DynamicsTables tables = impl_->tables();
-    const std::int64_t start[3] = {from.x.raw(), from.y.raw(), from.z.raw()};
-    const std::int64_t end[3] = {to.x.raw(), to.y.raw(), to.z.raw()};
-    std::optional<RayHit> nearest;
-    for (BodyRow row = 0; row < tables.motion.count(); ++row) {
-        const BodyMotion& motion = tables.motion[row];
-        std::int32_t rotation[9];
-        rotation_matrix(motion.orientation, rotation);
-        const ShapeInstance shape = shape_of(tables.properties[row], impl_->shapes, rotation);
-        ShapeRayHit hit{};
-        const bool met = lockwind::ray_cast(shape, motion.position, start, end, hit);
-        // Strictly nearer: rows are in id order, so that ties stay with the lower id.
-        if (met && (!nearest || Real::from_raw(hit.fraction) < nearest->fraction)) {
-            nearest = RayHit{motion.id,
-                             Real::from_raw(hit.fraction),
-                             {Real::from_raw(hit.point[0]),
-                              Real::from_raw(hit.point[1]),
-                              Real::from_raw(hit.point[2])},
-                             {convert<Real>(Unit::from_raw(hit.normal[0])),
-                              convert<Real>(Unit::from_raw(hit.normal[1])),
-                              convert<Real>(Unit::from_raw(hit.normal[2]))}};
-        }
-    }
-    return nearest;
 }
 
 } // namespace lockwind

@@ -59,6 +59,7 @@ Status World::redefine_body(const BodyDefinition& definition) {
         return Error{subject + "joint " + std::to_string(joint->id) +
                      " cannot hold it then: " + "one of its bodies must be dynamic"};
     }
+    impl_->query_index.drop();
     drop_contacts(tables, row);
     tables.sleep[row] = BodySleep{};
     for (const Joint& joint : tables.joints.rows()) {

@@ -60,6 +60,7 @@ void World::restore(std::span<const std::byte> bytes) {
 /// After another state has come: nothing of the steps before counts.
 void World::Impl::begin_anew() {
     events.clear();
+    query_index.drop();
     spawner.forget_despawns();
     fault = StepFault::none;
 }
@@ -75,6 +76,7 @@ std::uint32_t World::row_count(std::uint32_t section) const {
 
 std::span<std::byte> World::section_bytes(std::uint32_t section) {
     LOCKWIND_ASSERT(section < section::kCount);
+    impl_->query_index.drop(); // they may be about to be written
     return impl_->arena.live_bytes(section);
 }
 
@@ -84,6 +86,7 @@ Status World::check() const {
 
 void World::drop_derived() {
     impl_->dynamics.drop_derived();
+    impl_->query_index.drop();
     impl_->spawner.forget_despawns();
 }
 

@@ -97,6 +97,7 @@ Status World::step(std::span<const SlotInput> inputs, PhaseObserver* observer) {
         return world.fault_error();
     }
     world.events.clear();
+    world.query_index.drop();
     Step step(world, inputs);
     for (std::uint32_t phase = 0; phase < kPhases.size(); ++phase) {
         world.fault = (step.*kPhases[phase].run)();

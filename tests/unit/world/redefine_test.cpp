@@ -112,6 +112,19 @@ TEST(Redefine, KeepsJointsAndTheyHold) {
     EXPECT_NEAR(static_cast<double>(length(between).raw()) * 0x1p-32, 1, 1e-3);
 }
 
+TEST(Redefine, IsSeenByQueriesAtOnce) {
+    WorldDefinition scene = lift();
+    const WorldPtr world = make_world(scene);
+    step(*world, 1);
+    EXPECT_TRUE(world->ray_cast({0, 50, 0}, {0, -50, 0}).has_value());
+    for (BodyDefinition& body : scene.bodies) {
+        body.position.x = 20;
+        ASSERT_TRUE(world->redefine_body(body).ok());
+    }
+    EXPECT_FALSE(world->ray_cast({0, 50, 0}, {0, -50, 0}).has_value());
+    EXPECT_TRUE(world->ray_cast({20, 50, 0}, {20, -50, 0}).has_value());
+}
+
 TEST(Redefine, ErrorsChangeNothing) {
     WorldDefinition scene = busy_scene(6, 1);
     add_joints(scene, 10000, {0, 30, 0});
