@@ -254,14 +254,28 @@ private:
         return true;
     }
     bool look() {
-        draws_.begin_definition();
         for (const ContactView& contact : world_.contacts()) {
             LOCKWIND_ASSERT(contact.body_a < contact.body_b && contact.point_count > 0);
         }
+        draws_.begin_definition();
+        QueryFilter filter;
+        filter.layers = static_cast<std::uint32_t>(draws_.word());
+        filter.sensors = draws_.flag();
+        filter.ignore = draws_.below(kIds);
         const Vec3 from = draws_.vector();
-        if (const auto hit = world_.ray_cast(from, draws_.vector()); hit.has_value()) {
-            LOCKWIND_ASSERT(world_.body(hit->body).has_value());
+        const Vec3 to = draws_.vector();
+        const std::vector<RayHit> all = world_.ray_cast_all(from, to, filter);
+        const std::optional<RayHit> first = world_.ray_cast(from, to, filter);
+        LOCKWIND_ASSERT(first.has_value() == !all.empty() && (all.empty() || *first == all[0]));
+        world_.closest_point(from, draws_.real(), filter);
+        const ShapeDefinition shape = draw_shape(draws_);
+        if (!world_.check_query_shape(shape)) {
+            return true;
         }
+        const RealQuat turn = draws_.turn();
+        const std::vector<BodyId> overlapping = world_.overlap(shape, from, turn, filter);
+        const auto hit = world_.shape_cast(shape, from, turn, to, filter);
+        LOCKWIND_ASSERT(overlapping.empty() || (hit.has_value() && hit->fraction == Real(0)));
         return true;
     }
     bool step(std::uint32_t count) {
