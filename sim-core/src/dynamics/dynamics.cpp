@@ -4,7 +4,6 @@
 #include "dynamics/body_frame.h"
 #include "dynamics/broad_phase.h"
 #include "dynamics/contact_kernel_choice.h"
-#include "dynamics/joined_pairs.h"
 #include "dynamics/manifold_slots.h"
 #include "dynamics/narrow_phase.h"
 #include "dynamics/sleep.h"
@@ -20,8 +19,9 @@ namespace lockwind {
 struct Dynamics::Impl {
     Impl(const DynamicsSettings& settings, const ShapeLibrary* shapes, Simd simd)
         : activity(settings), frames(settings.body_capacity, shapes),
-          slots(settings.manifold_capacity), broad(settings), joined(settings.joint_capacity),
-          narrow(settings.body_capacity), solver(settings, contact_kernels(simd)), sleep(settings) {
+          slots(settings.manifold_capacity), broad(settings),
+          narrow(settings.body_capacity, settings.joint_capacity),
+          solver(settings, contact_kernels(simd)), sleep(settings) {
         // A pair that goes and one that comes both change in a tick.
         changes.reserve(2 * std::size_t{settings.pair_capacity});
     }
@@ -41,7 +41,6 @@ struct Dynamics::Impl {
     BodyFrames frames;
     ManifoldSlots slots;
     BroadPhase broad;
-    JoinedPairs joined;
     NarrowPhase narrow;
     Solver solver;
     Sleep sleep;
@@ -73,9 +72,8 @@ StepFault Dynamics::narrow_phase(const DynamicsTables& tables, std::uint32_t tic
     }
     impl_->refresh_frames(tables);
     impl_->slots.read(tables.manifolds);
-    impl_->joined.read(tables.joints);
     const StepFault fault = impl_->narrow.run(
-        tables, tick, impl_->frames, impl_->activity, impl_->joined, impl_->slots, impl_->changes);
+        tables, tick, impl_->frames, impl_->activity, impl_->slots, impl_->changes);
     std::sort(impl_->changes.begin(),
               impl_->changes.end(),
               [](const ContactChange& x, const ContactChange& y) {

@@ -277,7 +277,8 @@ void tangent_of(const std::int32_t normal[3], std::int32_t tangent[3]) {
     tangent[second] = static_cast<std::int32_t>((b * inverse) >> 32);
 }
 
-NarrowPhase::NarrowPhase(std::uint32_t body_capacity) : gates_(body_capacity) {}
+NarrowPhase::NarrowPhase(std::uint32_t body_capacity, std::uint32_t joint_capacity)
+    : gates_(body_capacity), joined_(joint_capacity) {}
 
 void NarrowPhase::read_gates(const DynamicsTables& tables,
                              const BodyFrames& frames,
@@ -300,9 +301,9 @@ StepFault NarrowPhase::run(const DynamicsTables& tables,
                            std::uint32_t tick,
                            const BodyFrames& frames,
                            const Activity& activity,
-                           const JoinedPairs& joined,
                            ManifoldSlots& slots,
                            std::vector<ContactChange>& changes) {
+    joined_.read(tables.joints);
     read_gates(tables, frames, activity.rows());
     read_gates(tables, frames, activity.partners());
     PairLook look(tables, tick, frames, slots);
@@ -313,7 +314,7 @@ StepFault NarrowPhase::run(const DynamicsTables& tables,
             continue;
         }
         const bool touched = is_touching(pair);
-        if (joined.has(pair.row_a, pair.row_b)) {
+        if (joined_.has(pair.row_a, pair.row_b)) {
             look.leave(pair);
         } else if (!needs_look(pair) || has_plane_only(pair, frames)) {
             continue;

@@ -22,15 +22,14 @@ inline constexpr std::int32_t kMotionBound[2] = {104858, 41943};
 /// Looks at the pairs whose bodies moved: makes, renews and frees their manifolds.
 class NarrowPhase {
 public:
-    explicit NarrowPhase(std::uint32_t body_capacity);
+    NarrowPhase(std::uint32_t body_capacity, std::uint32_t joint_capacity);
 
     /// Appends what began and ceased to touch to `changes`, in pair order. Where the manifolds run
-    /// out, the pairs that find none do not touch. Nor do `joined` ones.
+    /// out, the pairs that find none do not touch. Nor do those that a joint keeps from it.
     StepFault run(const DynamicsTables& tables,
                   std::uint32_t tick,
                   const BodyFrames& frames,
                   const Activity& activity,
-                  const JoinedPairs& joined,
                   ManifoldSlots& slots,
                   std::vector<ContactChange>& changes);
 
@@ -46,6 +45,7 @@ private:
     bool needs_look(const Pair& pair) const;
 
     std::vector<Gate> gates_;
+    JoinedPairs joined_;
 };
 
 /// A unit vector perpendicular to `normal`, a function of it alone.
