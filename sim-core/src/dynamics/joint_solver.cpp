@@ -20,8 +20,7 @@ std::int64_t JointSolver::Work::factor() const {
         part = round_shift(part, 1);
         whole = round_shift(whole, 1);
     }
-    return multiply_divide(
-        static_cast<std::int64_t>(part), kWhole, static_cast<std::int64_t>(whole));
+    return multiply_divide(raw_narrow<std::int64_t>(part), kWhole, raw_narrow<std::int64_t>(whole));
 }
 
 JointSolver::JointSolver(const DynamicsSettings& settings)

@@ -269,7 +269,7 @@ TEST(HullSurface, IsExactlyConvexAndHoldsAllPoints) {
 
 Points shuffled(Points points, Random& random) {
     for (std::size_t index = points.size(); index > 1; --index) {
-        std::swap(points[index - 1], points[random.bits() % index]);
+        std::swap(points[index - 1], points[static_cast<std::size_t>(random.bits() % index)]);
     }
     return points;
 }
