@@ -188,7 +188,7 @@ void JointReader::read_joint(int index) {
         reader.fail("body_b", "is body_a too; a joint joins two bodies");
     }
     const auto moves = [&](BodyId id) {
-        return id != 0 && world_.bodies[id - 1].mode == BodyMode::dynamic;
+        return id != 0 && world_.bodies[static_cast<std::size_t>(id - 1)].mode == BodyMode::dynamic;
     };
     if (!moves(definition.body_a) && !moves(definition.body_b)) {
         reader.fail("body_b",
@@ -218,7 +218,7 @@ void JointReader::read_frames(const scene_text::Joint& joint,
     }
     const RealQuat frame = frame_of(normalized(axis), spin);
     const auto place = [&](BodyId id, const Vec3& point, const char* field, Vec3& local) {
-        const BodyDefinition& body = world_.bodies[id - 1];
+        const BodyDefinition& body = world_.bodies[static_cast<std::size_t>(id - 1)];
         const RealQuat back = conjugate(normalized(body.orientation));
         local = rotate(back, point - body.position);
         if (abs(local.x) > kJointAnchorMax || abs(local.y) > kJointAnchorMax ||
