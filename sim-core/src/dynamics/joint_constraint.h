@@ -52,7 +52,7 @@ public:
     /// may spin wildly until all are solved.)
     void look_ahead(const SolverBodies& bodies);
     /// The impulses of the substep before, in two parts: forces of springs and motors, and what
-    /// holds, multiplied by a factor that WarmStart finds.
+    /// holds, which keep() then scales by the factor that JointSolver finds.
     void push(SolverBodies& bodies) const;
     void hold(SolverBodies& bodies) const;
     /// Work of what holds, at the bodies' present speeds: in some unit of energy, one for all

@@ -1,7 +1,6 @@
 #include "geometry/bounds.h"
 #include "geometry/collide.h"
-#include "hull_points.h"
-#include "reference.h"
+#include "random_body.h"
 
 #include <gtest/gtest.h>
 #include <string>
@@ -20,19 +19,8 @@ constexpr double kMargin = kSpeculativeMargin * kLengthUlp;
 constexpr double kSlop = kLinearSlop * kLengthUlp;
 constexpr double kTolerance = 4 * kLengthUlp;
 
-Body random_body(Random& random, ShapeType type, double scale = 1) {
-    const auto size = [&] { return random.uniform(0.05, 2) * scale; };
-    Body body = Body::plane();
-    if (type == ShapeType::sphere) {
-        body = Body::sphere(size());
-    } else if (type == ShapeType::capsule) {
-        body = Body::capsule(size() / 2, size());
-    } else if (type == ShapeType::box) {
-        body = Body::box(size(), size(), size());
-    } else if (type == ShapeType::hull) {
-        body = Body::hull(reference::random_hull(random, 12, scale));
-    }
-    return body.turn(random.direction(), random.uniform(0, 3.14));
+Body draw_body(Random& random, ShapeType type, double scale = 1) {
+    return reference::random_body(random, type, scale, 12);
 }
 
 /// A pair of random shapes within centimetres of contact.
@@ -56,7 +44,7 @@ bool is_polytope(ShapeType type) {
 }
 
 Pair random_pair(Random& random, ShapeType type_a, ShapeType type_b) {
-    Pair pair{random_body(random, type_a), random_body(random, type_b), {}};
+    Pair pair{draw_body(random, type_a), draw_body(random, type_b), {}};
     Vec direction = random.direction();
     double low = 0;
     double high = 8;
@@ -228,8 +216,8 @@ TEST_P(CollidePairs, PointsStayNearTheThinnerShapeHoweverDeep) {
     for (int round = 0; round < rounds(); ++round) {
         // Up to 40 m around shapes of 5 cm to 2 m.
         const bool grow = random.bits() % 2 != 0;
-        Pair pair{random_body(random, type_a(), grow ? 20 : 1),
-                  random_body(random, type_b(), grow ? 1 : 20),
+        Pair pair{draw_body(random, type_a(), grow ? 20 : 1),
+                  draw_body(random, type_b(), grow ? 1 : 20),
                   {}};
         const Vec delta = random.direction() * random.uniform(0, 42);
         for (int axis = 0; axis < 3; ++axis) {

@@ -11,8 +11,8 @@ namespace lockwind::reference {
 inline constexpr ShapeType kConvexTypes[] = {
     ShapeType::sphere, ShapeType::capsule, ShapeType::box, ShapeType::hull};
 
-/// Of sizes 5 cm .. 2 m times `scale`, turned anyhow.
-inline Body random_body(Random& random, ShapeType type, double scale) {
+/// Of sizes 5 cm .. 2 m times `scale`, turned anyhow; a hull is that of so many points.
+inline Body random_body(Random& random, ShapeType type, double scale, int hull_points) {
     const auto size = [&] { return random.uniform(0.05, 2) * scale; };
     Body body = Body::plane();
     if (type == ShapeType::sphere) {
@@ -22,9 +22,13 @@ inline Body random_body(Random& random, ShapeType type, double scale) {
     } else if (type == ShapeType::box) {
         body = Body::box(size(), size(), size());
     } else if (type == ShapeType::hull) {
-        body = Body::hull(random_hull(random, 10, scale));
+        body = Body::hull(random_hull(random, hull_points, scale));
     }
     return body.turn(random.direction(), random.uniform(0, 3.14));
+}
+
+inline Body random_body(Random& random, ShapeType type, double scale) {
+    return random_body(random, type, scale, 10);
 }
 
 /// Q31.32.

@@ -10,12 +10,6 @@ double value(Real real) {
     return static_cast<double>(real.raw()) * 0x1p-32;
 }
 
-void step(World& world, int ticks) {
-    for (int tick = 0; tick < ticks; ++tick) {
-        ASSERT_TRUE(world.step({}).ok());
-    }
-}
-
 /// Forces bear the weights above them, by Newton's third law.
 TEST(Contacts, OfAStackBearItsWeight) {
     WorldDefinition scene;
@@ -28,7 +22,7 @@ TEST(Contacts, OfAStackBearItsWeight) {
         scene.bodies.push_back(body);
     }
     const WorldPtr world = make_world(scene);
-    step(*world, 240);
+    step_idle(*world, 240);
     const std::vector<ContactView> contacts = world->contacts();
     ASSERT_EQ(contacts.size(), 3U);
     double above = 6;
@@ -67,7 +61,7 @@ TEST(Contacts, PersistBetweenBeginAndEnd) {
     int ticks_in_gate = 0;
     int begins = 0;
     for (int tick = 0; tick < 300; ++tick) {
-        step(*world, 1);
+        step_idle(*world, 1);
         for (const Event& event : world->events()) {
             begins += event.type == EventType::contact_begin ? 1 : 0;
             on_ground = event.type == EventType::contact_begin ||

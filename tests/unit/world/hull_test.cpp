@@ -47,12 +47,6 @@ HullDefinition tetrahedron(Real half) {
     return {{{half, half, half}, {half, -half, -half}, {-half, half, -half}, {-half, -half, half}}};
 }
 
-void step(World& world, int ticks) {
-    for (int tick = 0; tick < ticks; ++tick) {
-        ASSERT_TRUE(world.step({}).ok());
-    }
-}
-
 template <class Row>
 Row* rows(World& world, std::uint32_t section) {
     return reinterpret_cast<Row*>(world.section_bytes(section).data());
@@ -103,7 +97,7 @@ TEST(HullBody, CubeFallsAndRestsWhereTheBoxWould) {
     scene.hulls = {cube(0.5)};
     scene.bodies = {ground(1), hull(2, {0, 0.6, 0}, 0), box(3, {5, 0.6, 0}, {0.5, 0.5, 0.5})};
     const WorldPtr world = make_world(scene);
-    step(*world, 120);
+    step_idle(*world, 120);
     EXPECT_NEAR(value(world->body_at(1).position.y), value(world->body_at(2).position.y), 1e-4);
     EXPECT_NEAR(value(world->body_at(1).position.y), 0.5, 2e-3);
     EXPECT_EQ(world->counts().contacts, 8U);
@@ -130,10 +124,10 @@ TEST(HullBody, SlidesDownAWedgeAtTheAnalyticRate) {
         block.orientation = {0, 0, real(-std::sin(angle / 2)), real(std::cos(angle / 2))};
         scene.bodies = {ramp, block};
         const WorldPtr world = make_world(scene);
-        step(*world, 30);
+        step_idle(*world, 30);
         const double from = value(world->body_at(1).position.x);
         const double speed = value(world->body_at(1).linear_velocity.x) / std::cos(angle);
-        step(*world, 60);
+        step_idle(*world, 60);
         const double way = (value(world->body_at(1).position.x) - from) / std::cos(angle);
         const double rate = 9.81 * (std::sin(angle) - 0.5 * std::cos(angle));
         const double expected = rate > 0 ? speed + rate / 2 : 0;
@@ -153,7 +147,7 @@ TEST(HullBody, PyramidOfCubesStandsAsOneOfBoxes) {
         }
     }
     const WorldPtr world = make_world(scene);
-    step(*world, 600);
+    step_idle(*world, 600);
     double drift = 0;
     for (BodyRow row = 1; row < world->body_count(); ++row) {
         const Vec3 way = world->body_at(row).position - scene.bodies[row].position;
@@ -182,7 +176,7 @@ TEST(HullBody, HeapOfTetrahedraSettles) {
     // m^2/s^2: none can be faster than its fall made it, nor deeper than it moves in a tick.
     const double fall = 9.81 * 6;
     for (int tick = 0; tick < 600; ++tick) {
-        step(*world, 1);
+        step_idle(*world, 1);
         for (BodyRow row = 1; row < world->body_count(); ++row) {
             const BodyView body = world->body_at(row);
             ASSERT_GT(value(body.position.y), 0.1) << "body " << body.id << " tick " << tick;
@@ -227,7 +221,7 @@ TEST(HullBody, HangsByAnAnchorAmongItsPoints) {
         const WorldPtr world = make_world(scene);
         double farthest = 0; // of the body's origin from where it began
         for (int tick = 0; tick < 120; ++tick) {
-            step(*world, 1);
+            step_idle(*world, 1);
             const BodyView view = world->body_at(1);
             const Vec3 off = view.position + rotate(view.orientation, joint.anchor_b) - anchor;
             ASSERT_LT(std::hypot(value(off.x), value(off.y), value(off.z)), 1e-3) << tick;
@@ -272,7 +266,7 @@ TEST(HullSnapshot, RefusesHullsAndAxesThatAreNot) {
     scene.hulls = {cube(0.5), tetrahedron(0.4)};
     scene.bodies = {ground(1), hull(2, {0, 0.5, 0}, 0), hull(3, {0, 1.3, 0}, 1)};
     const WorldPtr world = make_world(scene);
-    step(*world, 30);
+    step_idle(*world, 30);
     std::vector<std::byte> sound;
     world->save(sound);
     const auto refuses = [&](auto&& damage) {
@@ -297,7 +291,7 @@ TEST(HullSnapshot, RefusesHullsAndAxesThatAreNot) {
             pairs()[row].axis = 120;
         }
     }));
-    step(*world, 5);
+    step_idle(*world, 5);
 }
 
 TEST(HullWorld, ErrorsNameHullAndBody) {

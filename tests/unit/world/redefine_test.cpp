@@ -5,12 +5,6 @@
 namespace lockwind::test {
 namespace {
 
-void step(World& world, int ticks) {
-    for (int tick = 0; tick < ticks; ++tick) {
-        ASSERT_TRUE(world.step({}).ok());
-    }
-}
-
 /// A lift that rises at 2 m/s with a crate on it.
 WorldDefinition lift() {
     WorldDefinition scene;
@@ -42,7 +36,7 @@ TEST(Redefine, KinematicBecomesDynamicInMidFlight) {
     body.angular_velocity = {0, 2, 1};
     scene.bodies = {body};
     const WorldPtr world = make_world(scene);
-    step(*world, 30);
+    step_idle(*world, 30);
     EXPECT_NEAR(static_cast<double>(world->body_at(0).position.x.raw()) * 0x1p-32, 1.5, 1e-5);
     BodyDefinition dynamic = definition_of(world->body_at(0));
     dynamic.mode = BodyMode::dynamic;
@@ -52,8 +46,8 @@ TEST(Redefine, KinematicBecomesDynamicInMidFlight) {
     other_scene.bodies = {dynamic};
     const WorldPtr other = make_world(other_scene);
     for (int tick = 0; tick < 120; ++tick) {
-        step(*world, 1);
-        step(*other, 1);
+        step_idle(*world, 1);
+        step_idle(*other, 1);
         const BodyView a = world->body_at(0);
         const BodyView b = other->body_at(0);
         ASSERT_EQ(a.position, b.position) << tick;
@@ -70,20 +64,20 @@ TEST(Redefine, DynamicBecomesKinematicAndCarries) {
     scene.bodies[0].linear_velocity = {};
     scene.bodies.push_back(ground(3));
     const WorldPtr world = make_world(scene);
-    step(*world, 180);
+    step_idle(*world, 180);
     const Real low = world->body_at(1).position.y;
     BodyDefinition floor = definition_of(world->body_at(0));
     floor.mode = BodyMode::kinematic;
     floor.linear_velocity = {0, 2, 0};
     ASSERT_TRUE(world->redefine_body(floor).ok());
-    step(*world, 60);
+    step_idle(*world, 60);
     const double risen = static_cast<double>((world->body_at(1).position.y - low).raw()) * 0x1p-32;
     EXPECT_NEAR(risen, 2, 0.05);
     // And back: both fall to the ground.
     floor = definition_of(world->body_at(0));
     floor.mode = BodyMode::dynamic;
     ASSERT_TRUE(world->redefine_body(floor).ok());
-    step(*world, 240);
+    step_idle(*world, 240);
     EXPECT_LT(world->body_at(1).position.y, low + Real(0.1));
     EXPECT_TRUE(world->check().ok());
 }
@@ -100,13 +94,13 @@ TEST(Redefine, KeepsJointsAndTheyHold) {
     joint.anchor_b = {0, 1, 0};
     scene.joints = {joint};
     const WorldPtr world = make_world(scene);
-    step(*world, 30);
+    step_idle(*world, 30);
     EXPECT_GT(world->body_at(1).position.y, Real(3.99));
     hand = definition_of(world->body_at(0));
     hand.mode = BodyMode::dynamic;
     hand.mass = 1;
     ASSERT_TRUE(world->redefine_body(hand).ok());
-    step(*world, 30);
+    step_idle(*world, 30);
     EXPECT_LT(world->body_at(0).position.y, Real(4.5)); // both fall
     const Vec3 between = world->body_at(0).position - world->body_at(1).position;
     EXPECT_NEAR(static_cast<double>(length(between).raw()) * 0x1p-32, 1, 1e-3);
@@ -115,7 +109,7 @@ TEST(Redefine, KeepsJointsAndTheyHold) {
 TEST(Redefine, IsSeenByQueriesAtOnce) {
     WorldDefinition scene = lift();
     const WorldPtr world = make_world(scene);
-    step(*world, 1);
+    step_idle(*world, 1);
     EXPECT_TRUE(world->ray_cast({0, 50, 0}, {0, -50, 0}).has_value());
     for (BodyDefinition& body : scene.bodies) {
         body.position.x = 20;
