@@ -18,9 +18,9 @@ constexpr std::uint32_t kTicksAnew = 9;
 class NineTicks {
 public:
     explicit NineTicks(MeasuredWorld& world) : world_(world) {
-        world_.simulation().save(before_);
+        world_.simulation().keep(before_);
         world_.step();
-        world_.simulation().save(first_);
+        world_.simulation().keep(first_);
     }
 
     double roll_back_seconds() {
@@ -29,7 +29,7 @@ public:
             world_.simulation().restore(first_);
             for (Snapshot& snapshot : anew_) {
                 world_.step();
-                world_.simulation().save(snapshot);
+                world_.simulation().keep(snapshot);
                 benchmark::DoNotOptimize(world_.simulation().state_hash());
             }
         });

@@ -22,12 +22,19 @@ MeasuredWorld warm_world(const BenchScene& scene) {
     return world;
 }
 
+/// What a simulation gives for the network and for itself.
+enum class Form { saved, kept };
+
 /// Repeats `work` on a world that has `snapshot` as its state.
 template <class Work>
-void repeat(benchmark::State& state, const BenchScene& scene, Work&& work) {
+void repeat(benchmark::State& state, const BenchScene& scene, Form form, Work&& work) {
     MeasuredWorld world = warm_world(scene);
     Snapshot snapshot;
-    world.simulation().save(snapshot);
+    if (form == Form::saved) {
+        world.simulation().save(snapshot);
+    } else {
+        world.simulation().keep(snapshot);
+    }
     for (auto iteration : state) {
         static_cast<void>(iteration);
         work(world.simulation(), snapshot);
@@ -41,16 +48,26 @@ void repeat(benchmark::State& state, const BenchScene& scene, Work&& work) {
 void save_state(benchmark::State& state, const BenchScene& scene) {
     Ring ring;
     std::size_t next = 0;
-    repeat(state, scene, [&](WorldSimulation& simulation, const Snapshot& /*snapshot*/) {
+    repeat(state, scene, Form::saved, [&](WorldSimulation& simulation, const Snapshot&) {
         simulation.save(ring[next]);
         next = (next + 1) % kRingSize;
     });
 }
 
+void keep_state(benchmark::State& state, const BenchScene& scene) {
+    Ring ring;
+    std::size_t next = 0;
+    repeat(state, scene, Form::kept, [&](WorldSimulation& simulation, const Snapshot&) {
+        simulation.keep(ring[next]);
+        next = (next + 1) % kRingSize;
+    });
+}
+
+/// The floor under keep_state and restore_state.
 void copy_state(benchmark::State& state, const BenchScene& scene) {
     Ring ring;
     std::size_t next = 0;
-    repeat(state, scene, [&](WorldSimulation& /*simulation*/, const Snapshot& snapshot) {
+    repeat(state, scene, Form::kept, [&](WorldSimulation&, const Snapshot& snapshot) {
         ring[next].resize(snapshot.size()); // the first nine times; as save() does
         std::memcpy(ring[next].data(), snapshot.data(), snapshot.size());
         benchmark::ClobberMemory();
@@ -60,7 +77,7 @@ void copy_state(benchmark::State& state, const BenchScene& scene) {
 
 void load_state(benchmark::State& state, const BenchScene& scene) {
     std::string error;
-    repeat(state, scene, [&](WorldSimulation& simulation, const Snapshot& snapshot) {
+    repeat(state, scene, Form::saved, [&](WorldSimulation& simulation, const Snapshot& snapshot) {
         const Status status = simulation.load(snapshot);
         if (!status) {
             error = status.error().message;
@@ -72,20 +89,20 @@ void load_state(benchmark::State& state, const BenchScene& scene) {
 }
 
 void restore_state(benchmark::State& state, const BenchScene& scene) {
-    repeat(state, scene, [](WorldSimulation& simulation, const Snapshot& snapshot) {
+    repeat(state, scene, Form::kept, [](WorldSimulation& simulation, const Snapshot& snapshot) {
         simulation.restore(snapshot);
     });
 }
 
 void hash_state(benchmark::State& state, const BenchScene& scene) {
-    repeat(state, scene, [](WorldSimulation& simulation, const Snapshot& /*snapshot*/) {
+    repeat(state, scene, Form::saved, [](WorldSimulation& simulation, const Snapshot&) {
         benchmark::DoNotOptimize(simulation.state_hash());
     });
 }
 
 /// The floor under hash_state: the same bytes in one go, without a tree.
 void hash_bytes_at_once(benchmark::State& state, const BenchScene& scene) {
-    repeat(state, scene, [](WorldSimulation& /*simulation*/, const Snapshot& snapshot) {
+    repeat(state, scene, Form::saved, [](WorldSimulation&, const Snapshot& snapshot) {
         benchmark::DoNotOptimize(hash_bytes(snapshot));
     });
 }
@@ -103,6 +120,7 @@ void register_state_benchmarks() {
     for (const BenchScene& scene : kBenchScenes) {
         register_state("save", scene, &save_state);
         register_state("load", scene, &load_state);
+        register_state("keep", scene, &keep_state);
         register_state("restore", scene, &restore_state);
         register_state("hash", scene, &hash_state);
         register_state("memcpy", scene, &copy_state);

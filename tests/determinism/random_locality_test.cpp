@@ -142,8 +142,7 @@ shared_pairs(const Tables& part, const Tables& whole, const std::vector<BodyRow>
             break;
         }
         const Pair& other = whole.pairs[next];
-        const bool same = std::pair(other.row_a, other.row_b) == place &&
-                          other.stamp == pair.stamp && other.axis == pair.axis &&
+        const bool same = std::pair(other.row_a, other.row_b) == place && other.axis == pair.axis &&
                           other.point_count == pair.point_count &&
                           same_bits(without_rows(part, pair), without_rows(whole, other));
         shared += same ? 1 : 0;

@@ -42,7 +42,7 @@ int main() {
     const WorldPtr world = make_pool();
     step(*world, 30);
     std::vector<std::byte> kept;
-    world->save(kept);
+    world->keep(kept);
 
     strike(*world, 1); // a guess
     step(*world, 8);

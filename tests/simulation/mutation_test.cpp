@@ -56,7 +56,7 @@ bool is_padding(const FieldDescriptor& field) {
 template <class Visit>
 std::uint32_t for_each_component(Visit visit) {
     std::uint32_t visited = 0;
-    for (std::uint32_t section = 1; section < World::schema().size(); ++section) {
+    for (std::uint32_t section = 1; section < section::kStateCount; ++section) {
         const std::span<const FieldDescriptor> fields = World::schema()[section].fields;
         for (std::uint32_t field = 0; field < fields.size(); ++field) {
             for (std::uint32_t component = 0; component < fields[field].components; ++component) {
@@ -72,7 +72,7 @@ std::uint32_t for_each_component(Visit visit) {
 template <class Visit>
 std::uint32_t for_each_field(Visit visit) {
     std::uint32_t visited = 0;
-    for (std::uint32_t section = 1; section < World::schema().size(); ++section) {
+    for (std::uint32_t section = 1; section < section::kStateCount; ++section) {
         for (const FieldDescriptor& field : World::schema()[section].fields) {
             if (!is_padding(field)) {
                 visit(section, field);
@@ -125,7 +125,7 @@ TEST(Mutation, ARowMoreOrLessIsHashedAndNamedByTheDiff) {
     const Result<std::uint64_t> hash = hash_state(World::schema(), before);
     ASSERT_EQ(hash.value(), world->state_hash());
     std::size_t end = 0;
-    for (std::uint32_t section = 0; section < World::schema().size(); ++section) {
+    for (std::uint32_t section = 0; section < section::kStateCount; ++section) {
         const SectionDescriptor& described = World::schema()[section];
         end += std::size_t{world->row_count(section)} * described.stride_bytes;
         if (section == section::kArena) {
@@ -274,7 +274,7 @@ TEST(Mutation, EveryByteIsClaimedByOneFieldOrIsZero) {
     const WorldPtr world = live_arena();
     std::size_t claimed = 0;
     std::size_t padding = 0;
-    for (std::uint32_t section = 0; section < World::schema().size(); ++section) {
+    for (std::uint32_t section = 0; section < section::kStateCount; ++section) {
         const SectionDescriptor& described = World::schema()[section];
         const std::span<const std::byte> rows = world->section_bytes(section);
         for (const FieldDescriptor& field : described.fields) {

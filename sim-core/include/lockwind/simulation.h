@@ -40,10 +40,12 @@ public:
     /// leaves the simulation as it was.
     virtual Status load(std::span<const std::byte> bytes) = 0;
 
-    /// The same of bytes that this very simulation saved and nobody has touched: not looked at
-    /// again, so that rolling back costs a copy. Any others are the caller's mistake.
-    virtual void restore(std::span<const std::byte> bytes) {
-        const Status loaded = load(bytes);
+    /// The state for this very simulation to go back to, so that rolling back costs a copy: with
+    /// what it derives from the state, in whatever form. Replaces `out`.
+    virtual void keep(std::vector<std::byte>& out) const { save(out); }
+    /// Goes back to what keep() gave. Any other bytes are the caller's mistake.
+    virtual void restore(std::span<const std::byte> kept) {
+        const Status loaded = load(kept);
         LOCKWIND_ASSERT(loaded.ok());
     }
 

@@ -166,12 +166,14 @@ public:
     HashTree hash_tree() const;
     void save(std::vector<std::byte>& out) const;
     Status load(std::span<const std::byte> bytes);
-    void restore(std::span<const std::byte> bytes);
+    void keep(std::vector<std::byte>& out) const;
+    void restore(std::span<const std::byte> kept);
     static StateSchema schema();
     std::uint32_t row_count(std::uint32_t section) const;
 
-    /// Test tools: live bytes of a section in this machine's order, after a change of which caches
-    /// are to be dropped; whether load() would take the state as it is; dropping caches.
+    /// Test tools: live bytes of a section in this machine's order, after a change of which all
+    /// that is derived is to be dropped; whether load() would take the state as it is; dropping
+    /// what is derived, to be made anew.
     std::span<std::byte> section_bytes(std::uint32_t section);
     Status check() const;
     void drop_derived();

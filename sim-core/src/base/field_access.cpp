@@ -150,7 +150,7 @@ std::optional<FieldPlace> find_field(StateSchema schema, std::string_view path) 
     const std::string_view rest = path.substr(dot + 1);
     const std::string_view field_name = rest.substr(0, rest.find_first_of(".["));
     for (std::uint32_t section = 0; section < schema.size(); ++section) {
-        if (schema[section].name != section_name) {
+        if (schema[section].derived || schema[section].name != section_name) {
             continue;
         }
         for (std::uint32_t index = 0; index < schema[section].fields.size(); ++index) {

@@ -43,7 +43,8 @@ struct FieldPlace {
     std::uint32_t component;
 };
 
-/// Finds "section.field", "section.field.y" or "section.field[1]"; without a component, the first.
+/// Finds "section.field", "section.field.y" or "section.field[1]" of the state; without a
+/// component, the first.
 std::optional<FieldPlace> find_field(StateSchema schema, std::string_view path);
 
 /// What names row `index` (in this machine's byte order): its entity field's value, or the index.

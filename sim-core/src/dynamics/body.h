@@ -18,12 +18,11 @@ struct BodyMotion {
     std::int32_t orientation[4];     // Q2.30 x y z w, unit
     std::int32_t linear_velocity[3]; // Q11.20 m/s
     std::int32_t
-        angular_velocity[3];       // Q11.20 m/s: world angular velocity (rad/s) x gyration radius
-    std::int32_t fat_bounds[6];    // Q15.16 m: min xyz, max xyz
-    std::int32_t motion_sum[2];    // Q9.22 m moved since the stamps, see contact recycling
-    std::uint32_t motion_stamp[2]; // tick when motion_sum last passed its bound
+        angular_velocity[3];    // Q11.20 m/s: world angular velocity (rad/s) x gyration radius
+    std::int32_t fat_bounds[6]; // Q15.16 m: min xyz, max xyz
+    std::int32_t motion_sum[2]; // Q9.22 m moved since each last passed its bound, see MotionBound
 };
-static_assert(sizeof(BodyMotion) == 112);
+static_assert(sizeof(BodyMotion) == 104);
 
 /// What a body is: row of "body_properties", same row as its BodyMotion. Written on creation only.
 struct BodyProperties {
@@ -53,13 +52,21 @@ struct BodyProperties {
 };
 static_assert(sizeof(BodyProperties) == 88);
 
+/// How far a body may move before the narrow phase looks at its pairs again. A touching pair of
+/// flat shapes bears more motion than others.
+enum class MotionBound : std::uint8_t { touching = 0, other = 1 };
+inline constexpr std::int32_t kMotionBound[2] = {104858, 41943}; // Q9.22 m: 25 mm and 10 mm
+constexpr std::uint8_t bit_of(MotionBound bound) {
+    return static_cast<std::uint8_t>(1U << static_cast<unsigned>(bound));
+}
+
 /// Whether a body rests: row of "body_sleep", same row as its BodyMotion. Apart and narrow, so that
 /// a step sees at a glance who is awake.
 struct BodySleep {
     std::uint16_t still_ticks; // for how many it has been slow; at most 65535
     std::uint8_t asleep; // 0, 1: no phase moves it. Fixed bodies sleep too, and kinematic ones
                          // that do not move
-    std::uint8_t zero;
+    std::uint8_t moved;  // bit_of(MotionBound): passed since a narrow phase saw it awake
 };
 static_assert(sizeof(BodySleep) == 4);
 
@@ -71,7 +78,6 @@ inline constexpr std::array kBodyMotionFields{
     LOCKWIND_FIELD(BodyMotion, angular_velocity, 20, "m/s", "xyz"),
     LOCKWIND_FIELD(BodyMotion, fat_bounds, 16, "m", ""),
     LOCKWIND_FIELD(BodyMotion, motion_sum, 22, "m", ""),
-    LOCKWIND_FIELD(BodyMotion, motion_stamp, 0, "tick", ""),
 };
 
 inline constexpr std::array kBodyPropertiesFields{
@@ -102,7 +108,7 @@ inline constexpr std::array kBodyPropertiesFields{
 inline constexpr std::array kBodySleepFields{
     LOCKWIND_FIELD(BodySleep, still_ticks, 0, "ticks", ""),
     LOCKWIND_FIELD(BodySleep, asleep, 0, "", ""),
-    LOCKWIND_FIELD(BodySleep, zero, 0, "", ""),
+    LOCKWIND_FIELD(BodySleep, moved, 0, "", ""),
 };
 
 } // namespace lockwind

@@ -1,6 +1,5 @@
 #include "dynamics/body_integration.h"
 
-#include "dynamics/narrow_phase.h"
 #include "dynamics/solver_format.h"
 #include "dynamics/turn.h"
 #include "geometry/rotation.h"
@@ -42,13 +41,14 @@ void turn_of(const StepConstants& constants,
     }
 }
 
-void renew_stamps(std::int64_t moved, std::uint32_t tick, BodyMotion& motion) {
+void count_motion(std::int64_t moved, BodyMotion& motion, BodySleep& sleep) {
     constexpr std::int64_t kMoveMax = 1 << 24; // 4 m: sums stay far inside Q9.22
-    for (int index = 0; index < 2; ++index) {
+    for (const MotionBound bound : {MotionBound::touching, MotionBound::other}) {
+        const auto index = static_cast<std::size_t>(bound);
         motion.motion_sum[index] += static_cast<std::int32_t>(std::min(moved, kMoveMax));
         if (motion.motion_sum[index] > kMotionBound[index]) {
             motion.motion_sum[index] = 0;
-            motion.motion_stamp[index] = tick + 1; // seen first by the next tick's narrow phase
+            sleep.moved |= bit_of(bound);
         }
     }
 }
@@ -137,8 +137,8 @@ void clamp_length(std::int32_t v[3], std::int64_t longest) {
 void move_body(const StepConstants& constants,
                const BodyTravel& travel,
                const BodyProperties& body,
-               std::uint32_t tick,
-               BodyMotion& motion) {
+               BodyMotion& motion,
+               BodySleep& sleep) {
     std::int64_t moved[3]; // Q.22 m
     for (int axis = 0; axis < 3; ++axis) {
         const std::int64_t step = divide(travel.linear[axis], constants.per_substep_rate, 12);
@@ -152,7 +152,7 @@ void move_body(const StepConstants& constants,
         constexpr std::int64_t kTurnMax = std::int64_t{1} << 31;
         bound += (std::min(length_bound(turn), kTurnMax) * body.bounding_radius) >> kUnitFraction;
     }
-    renew_stamps(bound, tick, motion);
+    count_motion(bound, motion, sleep);
     if (travel.orientation != nullptr) {
         std::copy(travel.orientation, travel.orientation + 4, motion.orientation);
     } else if (turns_freely(body, travel.angular, turn, constants.substeps)) {

@@ -15,15 +15,15 @@ struct BodyTravel {
     const std::int32_t* orientation; // Q2.30 at the tick's end, where it is known; else null
 };
 
-/// Moves and turns a body that is not fixed by what it travelled in `tick`, and renews its motion
-/// stamps. A dynamic body whose principal inertias differ and whose orientation is not given turns
-/// as a free rigid body and angular_velocity changes with it (gyroscopic torque). A turn is at most
-/// 4 rad a tick about each axis.
+/// Moves and turns a body that is not fixed by what it travelled in a tick, and counts how far. A
+/// dynamic body whose principal inertias differ and whose orientation is not given turns as a free
+/// rigid body and angular_velocity changes with it (gyroscopic torque). A turn is at most 4 rad a
+/// tick about each axis.
 void move_body(const StepConstants& constants,
                const BodyTravel& travel,
                const BodyProperties& body,
-               std::uint32_t tick,
-               BodyMotion& motion);
+               BodyMotion& motion,
+               BodySleep& sleep);
 
 /// Shortens the velocities to the largest speeds that the settings allow.
 void clamp_velocities(const StepConstants& constants,

@@ -18,6 +18,7 @@ constexpr std::int64_t kPredictionMax = 1 << 15; // 0.5 m, Q15.16
 constexpr std::int64_t kPredictionTicks = 3;
 
 constexpr auto kFixed = static_cast<std::uint8_t>(BodyMode::fixed);
+constexpr auto kDynamic = static_cast<std::uint8_t>(BodyMode::dynamic);
 
 Bounds stored_bounds(const BodyMotion& motion) {
     Bounds bounds{};
@@ -153,8 +154,42 @@ void BroadPhase::merge_new_pairs(const Table<Pair>& pairs, const std::vector<Key
         while (from > 0 && Key{pairs[from - 1].row_a, pairs[from - 1].row_b} > key) {
             pairs[--to] = pairs[--from];
         }
-        pairs[--to] = Pair{key.row_a, key.row_b, kNoIndex, 0, 0, 0, {0, 0}};
+        pairs[--to] = Pair{key.row_a, key.row_b, kNoIndex, 0, 0, {0, 0}};
     }
+}
+
+bool BroadPhase::derive_pairs(const DynamicsTables& tables) {
+    added_.clear();
+    tables.pairs.set_count(0);
+    for (BodyRow row = 0; row < tables.motion.count(); ++row) {
+        bounds_[row] = stored_bounds(tables.motion[row]);
+    }
+    grid_.build({bounds_.data(), tables.motion.count()});
+    bool fits = true;
+    for (BodyRow row = 0; row < tables.motion.count(); ++row) {
+        if (is_empty(bounds_[row]) || tables.properties[row].mode != kDynamic) {
+            continue;
+        }
+        grid_.query(bounds_[row], [&](BodyRow other) {
+            // Two dynamic bodies find each other twice: the lower row's find counts.
+            const bool twice = other < row && tables.properties[other].mode == kDynamic;
+            if (other == row || twice || is_empty(bounds_[other]) ||
+                !may_meet(tables.properties[row], tables.properties[other])) {
+                return;
+            }
+            if (added_.size() == pair_capacity_) {
+                fits = false;
+                return;
+            }
+            added_.push_back({std::min(row, other), std::max(row, other)});
+        });
+    }
+    if (!fits) {
+        return false;
+    }
+    std::sort(added_.begin(), added_.end());
+    merge_new_pairs(tables.pairs, added_);
+    return true;
 }
 
 StepFault BroadPhase::run(const DynamicsTables& tables,
@@ -178,6 +213,7 @@ StepFault BroadPhase::run(const DynamicsTables& tables,
     }
     for (const BodyRow row : moved_) {
         store_bounds(bounds_[row], tables.motion[row]);
+        tables.sleep[row].moved |= bit_of(MotionBound::other); // new pairs are to be looked at
     }
     std::uint32_t kept = 0;
     for (std::uint32_t index = 0; index < pair_count; ++index) {

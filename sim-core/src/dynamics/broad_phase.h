@@ -25,6 +25,10 @@ public:
                   ManifoldSlots& slots,
                   std::vector<ContactChange>& changes);
 
+    /// Makes the pair table anew from the stored bounds; nothing touches in it. False where it
+    /// cannot hold them: it is then empty.
+    bool derive_pairs(const DynamicsTables& tables);
+
 private:
     struct Key {
         BodyRow row_a;

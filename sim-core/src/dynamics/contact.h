@@ -9,18 +9,18 @@
 
 namespace lockwind {
 
-/// Two bodies whose fat bounds overlap, at least one dynamic: row of section "pair", sorted by
-/// (row_a, row_b).
+/// Two bodies whose fat bounds overlap, at least one dynamic: row of the derived section "pair",
+/// sorted by (row_a, row_b). The pairs follow from fat bounds and layers, what touches from the
+/// manifolds.
 struct Pair {
     BodyRow row_a; // row_a < row_b
     BodyRow row_b;
     std::uint32_t manifold;   // row of section "manifold"; kNoIndex unless touching
-    std::uint32_t stamp;      // tick when the narrow phase last looked at it; 0 for never
-    std::uint8_t axis;        // of boxes and hulls, see ManifoldCache
+    std::uint8_t axis;        // that separated boxes or hulls last; touching, their manifold's
     std::uint8_t point_count; // 0 .. 4; 0 unless touching
     std::uint8_t zero[2];
 };
-static_assert(sizeof(Pair) == 20);
+static_assert(sizeof(Pair) == 16);
 
 /// The contact of a touching pair: row of section "manifold", found by Pair::manifold. A free slot
 /// is all zero bytes (a live one has points); the lowest free slot is taken first.
@@ -36,7 +36,8 @@ struct Manifold {
     std::int32_t centre_delta[3]; // Q9.22 m: from centre A to centre B
     std::int32_t axis_separation; // Q9.22 m, see ManifoldCache
     std::uint8_t point_count;     // 1 .. 4; 0 in a free slot
-    std::uint8_t zero[3];
+    std::uint8_t axis;            // of boxes and hulls, see ManifoldCache
+    std::uint8_t zero[2];
     std::int32_t friction_impulse[2]; // Q11.20 m/s: impulse x (1/m_a + 1/m_b), along the tangents
     std::int32_t twist_impulse;       // Q11.20 m/s, at the smaller gyration radius
     // By point; entries past point_count are 0.
@@ -53,7 +54,6 @@ inline constexpr std::array kPairFields{
     LOCKWIND_FIELD(Pair, row_a, 0, "", ""),
     LOCKWIND_FIELD(Pair, row_b, 0, "", ""),
     LOCKWIND_FIELD(Pair, manifold, 0, "", ""),
-    LOCKWIND_FIELD(Pair, stamp, 0, "tick", ""),
     LOCKWIND_FIELD(Pair, axis, 0, "", ""),
     LOCKWIND_FIELD(Pair, point_count, 0, "", ""),
     LOCKWIND_FIELD(Pair, zero, 0, "", ""),
@@ -67,6 +67,7 @@ inline constexpr std::array kManifoldFields{
     LOCKWIND_FIELD(Manifold, centre_delta, 22, "m", "xyz"),
     LOCKWIND_FIELD(Manifold, axis_separation, 22, "m", ""),
     LOCKWIND_FIELD(Manifold, point_count, 0, "", ""),
+    LOCKWIND_FIELD(Manifold, axis, 0, "", ""),
     LOCKWIND_FIELD(Manifold, zero, 0, "", ""),
     LOCKWIND_FIELD(Manifold, friction_impulse, 20, "m/s", ""),
     LOCKWIND_FIELD(Manifold, twist_impulse, 20, "m/s", ""),

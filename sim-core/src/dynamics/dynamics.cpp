@@ -16,6 +16,34 @@
 
 namespace lockwind {
 
+namespace {
+
+/// Tells each pair its manifold. False where one has no pair, or not for itself.
+bool link_manifolds(const Table<Manifold>& manifolds, const Table<Pair>& pairs) {
+    const auto is_before = [](const Pair& pair, const Manifold& manifold) {
+        return pair.row_a != manifold.row_a ? pair.row_a < manifold.row_a
+                                            : pair.row_b < manifold.row_b;
+    };
+    const std::span<Pair> rows = pairs.rows();
+    for (std::uint32_t index = 0; index < manifolds.count(); ++index) {
+        const Manifold& manifold = manifolds[index];
+        if (manifold.point_count == 0) {
+            continue;
+        }
+        const auto pair = std::lower_bound(rows.begin(), rows.end(), manifold, is_before);
+        if (pair == rows.end() || pair->row_a != manifold.row_a || pair->row_b != manifold.row_b ||
+            pair->point_count != 0) {
+            return false;
+        }
+        pair->manifold = index;
+        pair->point_count = manifold.point_count;
+        pair->axis = manifold.axis;
+    }
+    return true;
+}
+
+} // namespace
+
 struct Dynamics::Impl {
     Impl(const DynamicsSettings& settings, const ShapeLibrary* shapes, Simd simd)
         : activity(settings), frames(settings.body_capacity, shapes),
@@ -65,15 +93,15 @@ StepFault Dynamics::broad_phase(const DynamicsTables& tables) {
     return impl_->broad.run(tables, impl_->frames, awake, impl_->slots, impl_->changes);
 }
 
-StepFault Dynamics::narrow_phase(const DynamicsTables& tables, std::uint32_t tick) {
+StepFault Dynamics::narrow_phase(const DynamicsTables& tables) {
     impl_->look(tables);
     if (impl_->activity.rows().empty()) {
         return StepFault::none;
     }
     impl_->refresh_frames(tables);
     impl_->slots.read(tables.manifolds);
-    const StepFault fault = impl_->narrow.run(
-        tables, tick, impl_->frames, impl_->activity, impl_->slots, impl_->changes);
+    const StepFault fault =
+        impl_->narrow.run(tables, impl_->frames, impl_->activity, impl_->slots, impl_->changes);
     std::sort(impl_->changes.begin(),
               impl_->changes.end(),
               [](const ContactChange& x, const ContactChange& y) {
@@ -92,10 +120,10 @@ void Dynamics::wake(const DynamicsTables& tables) {
     }
 }
 
-void Dynamics::solve(const DynamicsTables& tables, std::uint32_t tick) {
+void Dynamics::solve(const DynamicsTables& tables) {
     impl_->look(tables);
     impl_->refresh_frames(tables);
-    impl_->solver.solve(tables, tick, impl_->frames, impl_->activity);
+    impl_->solver.solve(tables, impl_->frames, impl_->activity);
 }
 
 void Dynamics::restitution(const DynamicsTables& tables) {
@@ -122,15 +150,21 @@ std::span<const std::uint32_t> Dynamics::broken_joints() const {
     return impl_->solver.broken_joints();
 }
 
-void Dynamics::drop_derived() {
+bool Dynamics::derive_pairs(const DynamicsTables& tables) {
+    return impl_->broad.derive_pairs(tables) && link_manifolds(tables.manifolds, tables.pairs);
+}
+
+void Dynamics::drop_caches() {
     impl_->frames.drop();
 }
 
 namespace {
 
+/// Its pairs are looked at: what a joint kept from touching may touch when that goes.
 void wake_dynamic(const DynamicsTables& tables, BodyRow row) {
     if (tables.properties[row].mode == static_cast<std::uint8_t>(BodyMode::dynamic)) {
         wake_body(tables, row);
+        tables.sleep[row].moved |= bit_of(MotionBound::other);
     }
 }
 

@@ -84,13 +84,13 @@ public:
 
     /// Updates fat bounds and the sorted pairs of overlapping ones.
     StepFault broad_phase(const DynamicsTables& tables);
-    /// Makes, recycles and frees manifolds of the pairs. `tick` is the tick being stepped (>= 1).
-    StepFault narrow_phase(const DynamicsTables& tables, std::uint32_t tick);
+    /// Makes, recycles and frees manifolds of the pairs.
+    StepFault narrow_phase(const DynamicsTables& tables);
     std::span<const ContactChange> contact_changes() const;
     /// Wakes the islands that a body which is awake touches.
     void wake(const DynamicsTables& tables);
     /// Substeps: integrates velocities and positions, solves contacts with friction.
-    void solve(const DynamicsTables& tables, std::uint32_t tick);
+    void solve(const DynamicsTables& tables);
     /// Newton's restitution for contacts that approached faster than 1 m/s.
     void restitution(const DynamicsTables& tables);
     /// Of the last solve and restitution.
@@ -105,8 +105,11 @@ public:
     /// Rows that the last solve moved, or would have, in row order.
     std::span<const BodyRow> awake_rows() const;
 
+    /// Makes the derived pairs anew from fat bounds and manifolds. False where there are too many
+    /// for the table, or a manifold belongs to none of them or to one that has another.
+    bool derive_pairs(const DynamicsTables& tables);
     /// Drops what is only a cache; the results of later phases do not change by a bit.
-    void drop_derived();
+    void drop_caches();
 
 private:
     struct Impl;

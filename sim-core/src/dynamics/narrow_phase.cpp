@@ -34,33 +34,23 @@ void cross_unit(const std::int32_t a[3], const std::int32_t b[3], std::int32_t o
 /// One look at a pair.
 class PairLook {
 public:
-    PairLook(const DynamicsTables& tables,
-             std::uint32_t tick,
-             const BodyFrames& frames,
-             ManifoldSlots& slots)
-        : tables_(tables), tick_(tick), frames_(frames), slots_(slots) {}
+    PairLook(const DynamicsTables& tables, const BodyFrames& frames, ManifoldSlots& slots)
+        : tables_(tables), frames_(frames), slots_(slots) {}
 
     /// False where the manifold table is full. The pair then does not touch.
     bool visit(Pair& pair);
-    /// The pair does not touch, and will be looked at when it next may.
-    void leave(Pair& pair) {
-        pair.stamp = 0;
-        if (pair.point_count != 0) {
-            release(pair);
-        }
-    }
+    /// The pair does not touch.
+    void release(Pair& pair);
 
 private:
     bool is_still(const Pair& pair) const;
     bool are_apart(const Pair& pair, const std::int32_t delta[3]) const;
-    void release(Pair& pair);
     void write_manifold(const Pair& pair,
                         const std::int32_t delta[3],
                         const ManifoldGeometry& geometry,
                         Manifold& manifold) const;
 
     const DynamicsTables& tables_;
-    std::uint32_t tick_;
     const BodyFrames& frames_;
     ManifoldSlots& slots_;
 };
@@ -185,6 +175,7 @@ void PairLook::write_manifold(const Pair& pair,
     std::copy(delta, delta + 3, manifold.centre_delta);
     manifold.axis_separation = geometry.axis_separation;
     manifold.point_count = static_cast<std::uint8_t>(geometry.point_count);
+    manifold.axis = static_cast<std::uint8_t>(geometry.axis);
     std::copy(friction, friction + 2, manifold.friction_impulse);
     // A single point bears no twist.
     manifold.twist_impulse = geometry.point_count > 1 ? friction[2] : 0;
@@ -208,7 +199,6 @@ void PairLook::write_manifold(const Pair& pair,
 }
 
 bool PairLook::visit(Pair& pair) {
-    pair.stamp = tick_;
     if (is_still(pair)) {
         return true;
     }
@@ -284,21 +274,19 @@ void NarrowPhase::read_gates(const DynamicsTables& tables,
                              const BodyFrames& frames,
                              std::span<const BodyRow> rows) {
     for (const BodyRow row : rows) {
-        const BodyMotion& motion = tables.motion[row];
-        gates_[row] = {{motion.motion_stamp[kMotionTouching], motion.motion_stamp[kMotionOther]},
-                       is_flat(frames[row].shape.type)};
+        gates_[row] = {tables.sleep[row].moved, is_flat(frames[row].shape.type)};
     }
 }
 
 bool NarrowPhase::needs_look(const Pair& pair) const {
     const Gate& a = gates_[pair.row_a];
     const Gate& b = gates_[pair.row_b];
-    const int level = is_touching(pair) && a.flat && b.flat ? kMotionTouching : kMotionOther;
-    return pair.stamp == 0 || std::max(a.stamp[level], b.stamp[level]) > pair.stamp;
+    const bool bears_more = is_touching(pair) && a.flat && b.flat;
+    const MotionBound bound = bears_more ? MotionBound::touching : MotionBound::other;
+    return ((a.moved | b.moved) & bit_of(bound)) != 0;
 }
 
 StepFault NarrowPhase::run(const DynamicsTables& tables,
-                           std::uint32_t tick,
                            const BodyFrames& frames,
                            const Activity& activity,
                            ManifoldSlots& slots,
@@ -306,7 +294,7 @@ StepFault NarrowPhase::run(const DynamicsTables& tables,
     joined_.read(tables.joints);
     read_gates(tables, frames, activity.rows());
     read_gates(tables, frames, activity.partners());
-    PairLook look(tables, tick, frames, slots);
+    PairLook look(tables, frames, slots);
     StepFault fault = StepFault::none;
     for (const std::uint32_t index : activity.pairs()) {
         Pair& pair = tables.pairs[index];
@@ -315,7 +303,7 @@ StepFault NarrowPhase::run(const DynamicsTables& tables,
         }
         const bool touched = is_touching(pair);
         if (joined_.has(pair.row_a, pair.row_b)) {
-            look.leave(pair);
+            look.release(pair);
         } else if (!needs_look(pair) || has_plane_only(pair, frames)) {
             continue;
         } else if (!look.visit(pair)) {
@@ -324,6 +312,9 @@ StepFault NarrowPhase::run(const DynamicsTables& tables,
         if (is_touching(pair) != touched) {
             changes.push_back({pair.row_a, pair.row_b, !touched});
         }
+    }
+    for (const BodyRow row : activity.rows()) {
+        tables.sleep[row].moved = 0;
     }
     slots.trim(tables.manifolds);
     return fault;

@@ -12,13 +12,6 @@
 
 namespace lockwind {
 
-/// Index of the motion sum and stamp that decide when a pair is looked at again: a touching pair of
-/// flat shapes bears more motion than others.
-inline constexpr int kMotionTouching = 0;
-inline constexpr int kMotionOther = 1;
-/// Motion, Q9.22 m, after which a body's stamp is renewed: 25 mm and 10 mm.
-inline constexpr std::int32_t kMotionBound[2] = {104858, 41943};
-
 /// Looks at the pairs whose bodies moved: makes, renews and frees their manifolds.
 class NarrowPhase {
 public:
@@ -27,16 +20,15 @@ public:
     /// Appends what began and ceased to touch to `changes`, in pair order. Where the manifolds run
     /// out, the pairs that find none do not touch. Nor do those that a joint keeps from it.
     StepFault run(const DynamicsTables& tables,
-                  std::uint32_t tick,
                   const BodyFrames& frames,
                   const Activity& activity,
                   ManifoldSlots& slots,
                   std::vector<ContactChange>& changes);
 
 private:
-    /// A body's motion stamps, close together for the pairs that need no look.
+    /// What decides about a look, close together for the pairs that need none.
     struct Gate {
-        std::uint32_t stamp[2];
+        std::uint8_t moved; // BodySleep::moved
         bool flat;
     };
     void read_gates(const DynamicsTables& tables,

@@ -255,7 +255,9 @@ bool Sleep::is_slow(const BodyMotion& motion, const BodyProperties& body) const 
 }
 
 void wake_body(const DynamicsTables& tables, BodyRow row) {
-    tables.sleep[row] = BodySleep{};
+    BodySleep& sleep = tables.sleep[row];
+    sleep.still_ticks = 0;
+    sleep.asleep = 0;
 }
 
 } // namespace lockwind

@@ -7,7 +7,6 @@ Solver::Solver(const DynamicsSettings& settings, const ContactKernels& kernels)
       contacts_(settings, kernels) {}
 
 void Solver::solve(const DynamicsTables& tables,
-                   std::uint32_t tick,
                    const BodyFrames& frames,
                    const Activity& activity) {
     bodies_.read(constants_, tables, frames, activity);
@@ -29,7 +28,7 @@ void Solver::solve(const DynamicsTables& tables,
     }
     joints_.write(constants_, tables);
     contacts_.write(tables);
-    bodies_.write(constants_, tables, tick);
+    bodies_.write(constants_, tables);
 }
 
 void Solver::restitution(const DynamicsTables& tables) {

@@ -18,10 +18,7 @@ class Solver {
 public:
     explicit Solver(const DynamicsSettings& settings,
                     const ContactKernels& kernels = kernels_of<ScalarLanes>());
-    void solve(const DynamicsTables& tables,
-               std::uint32_t tick,
-               const BodyFrames& frames,
-               const Activity& activity);
+    void solve(const DynamicsTables& tables, const BodyFrames& frames, const Activity& activity);
     void restitution(const DynamicsTables& tables);
     std::span<const ContactHit> hits() const { return contacts_.hits(); }
     std::span<const std::uint32_t> broken_joints() const { return joints_.broken(); }

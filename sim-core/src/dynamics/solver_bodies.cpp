@@ -168,20 +168,21 @@ void SolverBodies::integrate_positions(const StepConstants& constants) {
     }
 }
 
-void SolverBodies::write(const StepConstants& constants,
-                         const DynamicsTables& tables,
-                         std::uint32_t tick) {
+void SolverBodies::write(const StepConstants& constants, const DynamicsTables& tables) {
     for (const BodyRow row : dynamic_rows_) {
         BodyMotion& motion = tables.motion[row];
         const BodyProperties& body = tables.properties[row];
         std::copy(bodies_[row].linear, bodies_[row].linear + 3, motion.linear_velocity);
         std::copy(bodies_[row].angular, bodies_[row].angular + 3, motion.angular_velocity);
-        move_body(constants, courses_[row].travel, body, tick, motion);
+        move_body(constants, courses_[row].travel, body, motion, tables.sleep[row]);
         clamp_velocities(constants, body, motion);
     }
     for (const BodyRow row : kinematic_rows_) {
-        move_body(
-            constants, courses_[row].travel, tables.properties[row], tick, tables.motion[row]);
+        move_body(constants,
+                  courses_[row].travel,
+                  tables.properties[row],
+                  tables.motion[row],
+                  tables.sleep[row]);
     }
 }
 

@@ -35,7 +35,7 @@ public:
     void set_orientation(BodyRow row, const std::int32_t* orientation) {
         courses_[row].travel.orientation = orientation;
     }
-    void write(const StepConstants& constants, const DynamicsTables& tables, std::uint32_t tick);
+    void write(const StepConstants& constants, const DynamicsTables& tables);
 
     /// The arena's velocities as they are now, and back: what happens after the substeps counts
     /// from them.

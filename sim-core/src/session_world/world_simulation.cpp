@@ -17,6 +17,9 @@ constexpr std::string_view kDefaultField = "body.linear_velocity.x";
 std::string field_names(StateSchema schema) {
     std::string names;
     for (const SectionDescriptor& section : schema) {
+        if (section.derived) {
+            continue;
+        }
         for (const FieldDescriptor& field : section.fields) {
             names += names.empty() ? "" : ", ";
             names += std::string(section.name) + "." + std::string(field.name);
@@ -144,8 +147,12 @@ Status WorldSimulation::load(std::span<const std::byte> bytes) {
     return impl_->world->load(bytes);
 }
 
-void WorldSimulation::restore(std::span<const std::byte> bytes) {
-    impl_->world->restore(bytes);
+void WorldSimulation::keep(std::vector<std::byte>& out) const {
+    impl_->world->keep(out);
+}
+
+void WorldSimulation::restore(std::span<const std::byte> kept) {
+    impl_->world->restore(kept);
 }
 
 StateSchema WorldSimulation::schema() const {

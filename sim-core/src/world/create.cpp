@@ -103,8 +103,7 @@ World::Impl::Impl(const WorldDefinition& definition,
       staging(kWorldSections, capacities_of(capacities, definition.pods.size())), hasher(arena),
       dynamics(capacities, &shapes, simd), pods(std::move(pod_system)),
       spawner(capacities.body_capacity, creations_max(definition.pods.size())),
-      events(events_max(capacities)), query_index(capacities.body_capacity),
-      manifold_seen(capacities.manifold_capacity) {}
+      events(events_max(capacities)), query_index(capacities.body_capacity) {}
 
 DynamicsTables World::Impl::tables_of(StateArena& arena) {
     return {arena.table<BodyMotion>(section::kBody),

@@ -53,8 +53,7 @@ struct World::Impl {
     EventLog events;
     QueryIndex query_index;
     StepFault fault = StepFault::none;
-    BodyId fault_body = 0;                   // that left the bounds
-    std::vector<std::uint8_t> manifold_seen; // by row of section "manifold", while checking a load
+    BodyId fault_body = 0; // that left the bounds
 };
 
 /// Whether a body that moves has left the world.

@@ -23,7 +23,7 @@ Status World::Impl::validate(StateArena& state, const DynamicsTables* known) {
     if (Status status = check_joints(rows); !status) {
         return status;
     }
-    return check_contacts(rows, manifold_seen);
+    return check_contacts(rows, dynamics);
 }
 
 std::uint64_t World::state_hash() const {
@@ -51,9 +51,12 @@ Status World::load(std::span<const std::byte> bytes) {
     return Success{};
 }
 
-void World::restore(std::span<const std::byte> bytes) {
-    const Status loaded = load_canonical(impl_->arena, bytes);
-    LOCKWIND_ASSERT(loaded.ok());
+void World::keep(std::vector<std::byte>& out) const {
+    save_kept(impl_->arena, out);
+}
+
+void World::restore(std::span<const std::byte> kept) {
+    load_kept(impl_->arena, kept);
     impl_->begin_anew();
 }
 
@@ -85,7 +88,8 @@ Status World::check() const {
 }
 
 void World::drop_derived() {
-    impl_->dynamics.drop_derived();
+    impl_->dynamics.drop_caches();
+    impl_->dynamics.derive_pairs(impl_->tables());
     impl_->query_index.drop();
     impl_->spawner.forget_despawns();
 }

@@ -31,12 +31,11 @@ struct RowCounts {
     std::uint32_t body;
     std::uint32_t body_properties;
     std::uint32_t body_sleep;
-    std::uint32_t pair;
     std::uint32_t manifold;
     std::uint32_t joint;
     std::uint32_t player;
 };
-static_assert(sizeof(RowCounts) == 36);
+static_assert(sizeof(RowCounts) == 32);
 
 /// Sections by number, in the order of kWorldSections.
 namespace section {
@@ -45,10 +44,11 @@ inline constexpr std::uint32_t kGlobals = 1;
 inline constexpr std::uint32_t kBody = 2;
 inline constexpr std::uint32_t kBodyProperties = 3;
 inline constexpr std::uint32_t kBodySleep = 4;
-inline constexpr std::uint32_t kPair = 5;
-inline constexpr std::uint32_t kManifold = 6;
-inline constexpr std::uint32_t kJoint = 7;
-inline constexpr std::uint32_t kPlayer = 8;
+inline constexpr std::uint32_t kManifold = 5;
+inline constexpr std::uint32_t kJoint = 6;
+inline constexpr std::uint32_t kPlayer = 7;
+inline constexpr std::uint32_t kStateCount = 8;
+inline constexpr std::uint32_t kPair = 8; // derived
 inline constexpr std::uint32_t kCount = 9;
 } // namespace section
 
@@ -58,7 +58,6 @@ inline constexpr std::array kRowCountsFields{
     LOCKWIND_FIELD(RowCounts, body, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, body_properties, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, body_sleep, 0, "", ""),
-    LOCKWIND_FIELD(RowCounts, pair, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, manifold, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, joint, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, player, 0, "", ""),
@@ -79,10 +78,10 @@ inline constexpr std::array<SectionDescriptor, section::kCount> kWorldSections{{
     {"body", "dynamics", sizeof(BodyMotion), false, "id", kBodyMotionFields},
     {"body_properties", "dynamics", sizeof(BodyProperties), false, "", kBodyPropertiesFields},
     {"body_sleep", "dynamics", sizeof(BodySleep), false, "", kBodySleepFields},
-    {"pair", "dynamics", sizeof(Pair), false, "", kPairFields},
     {"manifold", "dynamics", sizeof(Manifold), false, "", kManifoldFields},
     {"joint", "dynamics", sizeof(Joint), false, "id", kJointFields},
     {"player", "systems", sizeof(Player), false, "", kPlayerFields},
+    {"pair", "dynamics", sizeof(Pair), true, "", kPairFields},
 }};
 
 } // namespace lockwind

@@ -125,7 +125,7 @@ StepFault Step::broad_phase() {
 }
 
 StepFault Step::narrow_phase() {
-    return world_.dynamics.narrow_phase(tables_, tick_low());
+    return world_.dynamics.narrow_phase(tables_);
 }
 
 StepFault Step::wake() {
@@ -134,7 +134,7 @@ StepFault Step::wake() {
 }
 
 StepFault Step::solve() {
-    world_.dynamics.solve(tables_, tick_low());
+    world_.dynamics.solve(tables_);
     return StepFault::none;
 }
 

@@ -28,7 +28,7 @@ Status check_bodies(const DynamicsTables& tables,
                     const ShapeLibrary& shapes);
 /// Of bodies that are sound.
 Status check_joints(const DynamicsTables& tables);
-/// Of sound bodies. `seen` is scratch of manifold capacity.
-Status check_contacts(const DynamicsTables& tables, std::span<std::uint8_t> seen);
+/// Of sound bodies. Makes the pairs anew, which follow from the rest.
+Status check_contacts(const DynamicsTables& tables, Dynamics& dynamics);
 
 } // namespace lockwind

@@ -10,7 +10,7 @@ import tempfile
 # What takes half a minute a pass.
 HEAVY = re.compile(r"/heap_8000\b|_50000$")
 # Enough for a page with a figure everywhere.
-QUICK = re.compile(r"^(step|phases|save|load|restore|hash|memcpy|xxh3|rollback)/pyramid_210\b"
+QUICK = re.compile(r"^(step|phases|save|load|keep|restore|hash|memcpy|xxh3|rollback)/pyramid_210\b"
                    r"|^step/heap_1000/(lockwind|bullet)$|^rollback/boxes_200|^growth/.*_1(000|0000)$")
 
 

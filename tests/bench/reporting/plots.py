@@ -106,7 +106,7 @@ def phases(results):
 def snapshots(results):
     scenes = list(results["snapshots"])
     figure, axes = plt.subplots(figsize=(9, 3.6))
-    work = ("memcpy", "save", "restore", "xxh3", "hash", "load")
+    work = ("memcpy", "keep", "restore", "xxh3", "hash", "save", "load")
     grouped_bars(axes, scenes, {
         name: [results["snapshots"][scene][f"{name}_us"] for scene in scenes] for name in work})
     axes.set_yscale("log")

@@ -8,7 +8,7 @@ from reporting.measure import BenchError
 # These time themselves; for the others the processor's time counts.
 SELF_TIMED = ("step/", "phases/", "rollback/")
 MICROSECONDS = {"ns": 1e-3, "us": 1.0, "ms": 1e3, "s": 1e6}
-SNAPSHOT_WORK = ("save", "restore", "load", "hash", "memcpy", "xxh3")
+SNAPSHOT_WORK = ("keep", "restore", "save", "load", "hash", "memcpy", "xxh3")
 
 
 class Runs:
@@ -95,14 +95,14 @@ def phases(runs):
 def snapshots(runs):
     result = {}
     for name, scene in runs.matching(r"save/(\w+)"):
-        figures = {"bodies": runs.median(name, "bodies"), "bytes": runs.median(name, "snapshot_bytes")}
+        figures = {"bodies": runs.median(name, "bodies"), "bytes": runs.median(name, "snapshot_bytes"),
+                   "kept_bytes": runs.median(f"keep/{scene}", "snapshot_bytes")}
         figures["bytes_per_body"] = figures["bytes"] / figures["bodies"]
         for work in SNAPSHOT_WORK:
             figures[f"{work}_us"] = runs.median_us(f"{work}/{scene}")
-        for work in ("save", "restore", "load", "hash"):
-            for floor in ("memcpy", "xxh3"):
-                ratios = runs.ratios(f"{work}/{scene}", f"{floor}/{scene}")
-                figures[f"{work}_over_{floor}"] = statistics.median(ratios)
+        for work, floor in (("keep", "memcpy"), ("restore", "memcpy"), ("hash", "xxh3")):
+            ratios = runs.ratios(f"{work}/{scene}", f"{floor}/{scene}")
+            figures[f"{work}_over_{floor}"] = statistics.median(ratios)
         result[scene] = figures
     return result
 

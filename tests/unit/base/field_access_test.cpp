@@ -89,7 +89,10 @@ TEST(FieldAccess, FindsEveryNameItGives) {
                 const auto place = find_field(kSampleSchema,
                                               std::string(descriptor.name) + "." +
                                                   component_name(descriptor.fields[field], c));
-                ASSERT_TRUE(place.has_value());
+                ASSERT_EQ(place.has_value(), !descriptor.derived);
+                if (descriptor.derived) {
+                    continue;
+                }
                 EXPECT_EQ(place->section, section);
                 EXPECT_EQ(place->field, field);
                 EXPECT_EQ(place->component, c);

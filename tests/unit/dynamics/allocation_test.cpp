@@ -44,9 +44,9 @@ TEST(Allocation, NoPhaseAllocates) {
     std::size_t changes = 0;
     for (std::uint32_t tick = 1; tick <= 180; ++tick) {
         static_cast<void>(dynamics.broad_phase(tables));
-        static_cast<void>(dynamics.narrow_phase(tables, tick));
+        static_cast<void>(dynamics.narrow_phase(tables));
         changes += dynamics.contact_changes().size();
-        dynamics.solve(tables, tick);
+        dynamics.solve(tables);
         dynamics.restitution(tables);
     }
     EXPECT_EQ(allocation_count, before);

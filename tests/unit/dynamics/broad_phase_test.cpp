@@ -69,6 +69,9 @@ TEST(BroadPhase, PairsAreThoseOfBruteForceAtEveryTick) {
         bench.step();
         const std::vector<Rows> rows = rows_of_pairs(bench);
         ASSERT_EQ(rows, pairs_by_brute_force(bench)) << "tick " << tick;
+        const DynamicsState before = bench.state();
+        ASSERT_TRUE(bench.dynamics().derive_pairs(bench.tables()));
+        ASSERT_TRUE(same_bits(bench.state(), before)) << "tick " << tick;
         seen.insert(rows.begin(), rows.end());
     }
     EXPECT_GT(seen.size(), rows_of_pairs(bench).size()) << "no pair ever went";

@@ -395,7 +395,8 @@ TEST(Joint, JoinedBodiesMeetOnlyWhereTheyMay) {
         bench.add(joint);
         bench.run(120);
         EXPECT_EQ(bench.position(b, 0) - bench.position(a, 0) > 0.9, collide);
-        bench.state().joint_count = 0; // they may again
+        wake_joined(bench.tables(), bench.state().joints[0]); // they may again
+        bench.state().joint_count = 0;
         bench.state().joints[0] = Joint{};
         bench.run(120);
         EXPECT_GT(bench.position(b, 0) - bench.position(a, 0), 0.9);

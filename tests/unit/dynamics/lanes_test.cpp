@@ -154,13 +154,13 @@ public:
     }
     void step() {
         const DynamicsTables tables = bench_.tables();
-        const std::uint32_t tick = ++bench_.state().tick;
+        ++bench_.state().tick;
         ASSERT_EQ(bench_.dynamics().broad_phase(tables), StepFault::none);
-        ASSERT_EQ(bench_.dynamics().narrow_phase(tables, tick), StepFault::none);
+        ASSERT_EQ(bench_.dynamics().narrow_phase(tables), StepFault::none);
         const Activity activity = bench_.activity();
         frames_->refresh(tables, activity.rows());
         frames_->refresh(tables, activity.partners());
-        solver_->solve(tables, tick, *frames_, activity);
+        solver_->solve(tables, *frames_, activity);
         solver_->restitution(tables);
     }
     DynamicsBench& bench() { return bench_; }

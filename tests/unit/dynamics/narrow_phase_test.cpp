@@ -12,10 +12,8 @@ TEST(NarrowPhase, RestingManifoldsAreNotMadeAnew) {
     bench.add(cube(0.5, vec(0, 0.5, 0)));
     bench.add(cube(0.5, vec(0, 1.5, 0)));
     bench.run(60);
-    const std::uint32_t looked = bench.state().pairs[0].stamp;
     const Manifold before = bench.state().manifolds[0];
     bench.run(120);
-    EXPECT_EQ(bench.state().pairs[0].stamp, looked);
     const Manifold& after = bench.state().manifolds[0];
     EXPECT_TRUE(std::equal(before.anchor_a, before.anchor_a + 12, after.anchor_a));
     EXPECT_TRUE(std::equal(before.separation, before.separation + 4, after.separation));
@@ -59,9 +57,9 @@ TEST(NarrowPhase, ImpulsesFollowTheirFeatures) {
         turned.feature[point] = before.feature[from];
         turned.normal_impulse[point] = before.normal_impulse[from];
     }
-    bench.state().pairs[0].stamp = 0;
+    bench.look_again();
     bench.state().manifolds[0].centre_delta[0] += 1 << 22;
-    ASSERT_EQ(bench.dynamics().narrow_phase(bench.tables(), 31), StepFault::none);
+    ASSERT_EQ(bench.dynamics().narrow_phase(bench.tables()), StepFault::none);
     const Manifold& after = bench.state().manifolds[0];
     for (int point = 0; point < 4; ++point) {
         EXPECT_EQ(after.feature[point], before.feature[point]);
@@ -93,8 +91,8 @@ TEST(NarrowPhase, FrictionKeepsItsDirectionWhenTheNormalTurns) {
     world_friction(manifold, before);
     const std::int32_t normal = manifold.normal[0];
     bench.motion(row).position[2] += std::int64_t{1} << 26;
-    bench.state().pairs[0].stamp = 0;
-    ASSERT_EQ(bench.dynamics().narrow_phase(bench.tables(), 2), StepFault::none);
+    bench.look_again();
+    ASSERT_EQ(bench.dynamics().narrow_phase(bench.tables()), StepFault::none);
     ASSERT_NE(manifold.normal[0], normal);
     double after[3];
     world_friction(manifold, after);

@@ -127,6 +127,43 @@ TEST(CollideHull, RandomCubesTouchAsBoxesDo) {
     EXPECT_GT(same, compared * 9 / 10) << "of " << compared;
 }
 
+/// What a pair that did not touch remembers may save time; it may not change what is found.
+TEST(CollideHull, NoSeparatingAxisThatIsRememberedChangesTheContact) {
+    Random random(53);
+    int touching = 0;
+    int trusted = 0;
+    for (int round = 0; round < 3000; ++round) {
+        const Vec half{random.uniform(0.2, 1), random.uniform(0.2, 1), random.uniform(0.2, 1)};
+        const bool hulls = round % 3 == 0;
+        Body bodies[2] = {Body::box(half[0], half[1], half[2]), Body::box(0.5, 0.4, 0.6)};
+        if (hulls) {
+            bodies[0] = Body::hull(made(box_points(half[0], half[1], half[2])));
+        }
+        for (Body& body : bodies) {
+            body.turn(random.direction(), random.uniform(0, 3));
+        }
+        const Vec offset = random.direction() * random.uniform(0.6, 2);
+        const ManifoldGeometry plain = touch(bodies[0], bodies[1], offset);
+        touching += plain.point_count != 0 ? 1 : 0;
+        for (std::uint32_t axis = 1; axis <= (hulls ? 2 * kHullFacesMax : 15U); ++axis) {
+            ManifoldCache cache;
+            cache.axis = axis;
+            const ManifoldGeometry other = touch(bodies[0], bodies[1], offset, cache);
+            ASSERT_EQ(other.point_count, plain.point_count) << "axis " << axis;
+            if (plain.point_count == 0) {
+                trusted += other.axis == axis ? 1 : 0;
+                continue;
+            }
+            ASSERT_TRUE(std::equal(plain.normal, plain.normal + 3, other.normal));
+            ASSERT_EQ(sorted_points(plain), sorted_points(other));
+            ASSERT_EQ(plain.axis, other.axis);
+            ASSERT_EQ(plain.axis_separation, other.axis_separation);
+        }
+    }
+    EXPECT_GT(touching, 500);
+    EXPECT_GT(trusted, 2000);
+}
+
 TEST(CollideHull, CubeStandsOnThePlaneAsTheBoxDoes) {
     Random random(53);
     for (int round = 0; round < 300; ++round) {

@@ -278,17 +278,19 @@ TEST(HullSnapshot, RefusesHullsAndAxesThatAreNot) {
         return !world->load(damaged).ok();
     };
     const auto properties = [&] { return rows<BodyProperties>(*world, section::kBodyProperties); };
-    const auto pairs = [&] { return rows<Pair>(*world, section::kPair); };
+    const auto manifolds = [&] { return rows<Manifold>(*world, section::kManifold); };
     EXPECT_TRUE(refuses([&] { properties()[1].hull = 2; }));
     EXPECT_TRUE(refuses([&] { properties()[1].hull = 1; })); // another build
     EXPECT_TRUE(refuses([&] { properties()[0].hull = 1; })); // a plane has none
     EXPECT_TRUE(refuses([&] { properties()[1].shape = 2; }));
     EXPECT_TRUE(refuses([&] { properties()[1].size[0] = 1; }));
-    EXPECT_TRUE(refuses([&] { pairs()[0].axis = 129; }));
+    EXPECT_TRUE(refuses([&] { manifolds()[0].axis = 129; }));
     // What is in range but names no face is taken, and stepped.
     EXPECT_FALSE(refuses([&] {
-        for (std::uint32_t row = 0; row < world->row_count(section::kPair); ++row) {
-            pairs()[row].axis = 120;
+        for (std::uint32_t row = 0; row < world->row_count(section::kManifold); ++row) {
+            if (manifolds()[row].point_count != 0) {
+                manifolds()[row].axis = 120;
+            }
         }
     }));
     step_idle(*world, 5);

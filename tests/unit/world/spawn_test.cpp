@@ -12,7 +12,7 @@
 namespace lockwind::test {
 namespace {
 
-constexpr std::array<std::uint32_t, section::kCount> kCapacities{1, 1, 32, 32, 32, 200, 200, 8, 4};
+constexpr std::array<std::uint32_t, section::kCount> kCapacities{1, 1, 32, 32, 32, 200, 8, 4, 200};
 
 struct Tables {
     StateArena arena{kWorldSections, kCapacities};
@@ -34,7 +34,7 @@ struct Tables {
     void pair(BodyRow a, BodyRow b) {
         const std::uint32_t row = dynamics.pairs.count();
         dynamics.pairs.set_count(row + 1);
-        dynamics.pairs[row] = Pair{a, b, kNoIndex, 0, 0, 0, {0, 0}};
+        dynamics.pairs[row] = Pair{a, b, kNoIndex, 0, 0, {0, 0}};
     }
 };
 
