@@ -27,13 +27,16 @@ static_assert(sizeof(Pair) == 16);
 ///
 /// It keeps the geometry of the tick that made it. The solver's rows use those anchors; the
 /// separation follows the bodies: separation + normal . (centre_delta, anchors now - then), anchors
-/// turned with their bodies. B's anchor is anchor_a - centre_delta.
+/// turned with their bodies from the orientations they had then. B's anchor is anchor_a -
+/// centre_delta.
 struct Manifold {
     BodyRow row_a; // of its pair
     BodyRow row_b;
-    std::int32_t normal[3];       // Q2.30, world, from A to B
-    std::int32_t tangent[3];      // Q2.30, world; the second one is normal x tangent
-    std::int32_t centre_delta[3]; // Q9.22 m: from centre A to centre B
+    std::int32_t normal[3];        // Q2.30, world, from A to B
+    std::int32_t tangent[3];       // Q2.30, world; the second one is normal x tangent
+    std::int32_t centre_delta[3];  // Q9.22 m: from centre A to centre B
+    std::int32_t orientation_a[4]; // Q2.30 x y z w, unit; of a sphere the identity
+    std::int32_t orientation_b[4];
     std::int32_t axis_separation; // Q9.22 m, see ManifoldCache
     std::uint8_t point_count;     // 1 .. 4; 0 in a free slot
     std::uint8_t axis;            // of boxes and hulls, see ManifoldCache
@@ -45,10 +48,8 @@ struct Manifold {
     std::int32_t separation[4];     // Q9.22 m
     std::uint32_t feature[4];
     std::int32_t anchor_a[4 * 3]; // Q9.22 m, world, from centre A; xyz of each point
-    std::int32_t local_a[4 * 3];  // Q9.22 m, in A's frame
-    std::int32_t local_b[4 * 3];  // Q9.22 m, in B's frame
 };
-static_assert(sizeof(Manifold) == 256);
+static_assert(sizeof(Manifold) == 192);
 
 inline constexpr std::array kPairFields{
     LOCKWIND_FIELD(Pair, row_a, 0, "", ""),
@@ -65,6 +66,8 @@ inline constexpr std::array kManifoldFields{
     LOCKWIND_FIELD(Manifold, normal, 30, "", "xyz"),
     LOCKWIND_FIELD(Manifold, tangent, 30, "", "xyz"),
     LOCKWIND_FIELD(Manifold, centre_delta, 22, "m", "xyz"),
+    LOCKWIND_FIELD(Manifold, orientation_a, 30, "", "xyzw"),
+    LOCKWIND_FIELD(Manifold, orientation_b, 30, "", "xyzw"),
     LOCKWIND_FIELD(Manifold, axis_separation, 22, "m", ""),
     LOCKWIND_FIELD(Manifold, point_count, 0, "", ""),
     LOCKWIND_FIELD(Manifold, axis, 0, "", ""),
@@ -75,8 +78,6 @@ inline constexpr std::array kManifoldFields{
     LOCKWIND_FIELD(Manifold, separation, 22, "m", ""),
     LOCKWIND_FIELD(Manifold, feature, 0, "", ""),
     LOCKWIND_FIELD(Manifold, anchor_a, 22, "m", ""),
-    LOCKWIND_FIELD(Manifold, local_a, 22, "m", ""),
-    LOCKWIND_FIELD(Manifold, local_b, 22, "m", ""),
 };
 
 } // namespace lockwind

@@ -31,6 +31,39 @@ void cross_unit(const std::int32_t a[3], const std::int32_t b[3], std::int32_t o
     }
 }
 
+/// The orientation that a frame's rotation stands for.
+void copy_orientation(const BodyFrame& frame, std::int32_t out[4]) {
+    constexpr std::int32_t kIdentity[4] = {0, 0, 0, kUnitOne};
+    const bool turns = frame.shape.type != ShapeType::sphere;
+    std::copy_n(turns ? frame.orientation : kIdentity, 4, out);
+}
+
+/// How far a body's turn since `orientation` has moved a point at `arm` from its centre, Q9.22 m.
+class TurnSince {
+public:
+    TurnSince(const BodyFrame& frame, const std::int32_t orientation[4], bool turns)
+        : now_(frame.rotation), turns_(turns) {
+        rotation_matrix(orientation, then_);
+    }
+    void move(const std::int32_t arm[3], std::int64_t moved[3]) const {
+        std::fill_n(moved, 3, 0);
+        if (turns_) {
+            std::int32_t local[3];
+            std::int32_t now[3];
+            inverse_rotate(then_, arm, local);
+            rotate(now_, local, now);
+            for (int axis = 0; axis < 3; ++axis) {
+                moved[axis] = std::int64_t{now[axis]} - arm[axis];
+            }
+        }
+    }
+
+private:
+    const std::int32_t* now_;
+    std::int32_t then_[9];
+    bool turns_;
+};
+
 /// One look at a pair.
 class PairLook {
 public:
@@ -73,24 +106,18 @@ bool PairLook::is_still(const Pair& pair) const {
     // A turn by an eighth of the bounding radius; a fixed body does not turn.
     const BodyProperties& a = tables_.properties[pair.row_a];
     const BodyProperties& b = tables_.properties[pair.row_b];
+    const TurnSince turn_of_a(frame_a, manifold.orientation_a, a.mode != kFixed);
+    const TurnSince turn_of_b(frame_b, manifold.orientation_b, b.mode != kFixed);
     for (std::uint32_t point = 0; point < pair.point_count; ++point) {
-        std::int64_t turn_a[3] = {0, 0, 0};
-        std::int64_t turn_b[3] = {0, 0, 0};
-        std::int32_t now[3];
         const std::int32_t* anchor_a = manifold.anchor_a + 3 * point;
-        if (a.mode != kFixed) {
-            rotate(frame_a.rotation, manifold.local_a + 3 * point, now);
-            for (int axis = 0; axis < 3; ++axis) {
-                turn_a[axis] = std::int64_t{now[axis]} - anchor_a[axis];
-            }
+        std::int32_t anchor_b[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            anchor_b[axis] = raw_subtract(anchor_a[axis], manifold.centre_delta[axis]);
         }
-        if (b.mode != kFixed) {
-            rotate(frame_b.rotation, manifold.local_b + 3 * point, now);
-            for (int axis = 0; axis < 3; ++axis) {
-                turn_b[axis] =
-                    std::int64_t{now[axis]} - anchor_a[axis] + manifold.centre_delta[axis];
-            }
-        }
+        std::int64_t turn_a[3];
+        std::int64_t turn_b[3];
+        turn_of_a.move(anchor_a, turn_a);
+        turn_of_b.move(anchor_b, turn_b);
         std::int64_t square = 0;
         for (int axis = 0; axis < 3; ++axis) {
             const std::int64_t drift = std::int64_t{delta[axis]} - manifold.centre_delta[axis] +
@@ -173,6 +200,8 @@ void PairLook::write_manifold(const Pair& pair,
     std::copy(geometry.normal, geometry.normal + 3, manifold.normal);
     std::copy(tangent, tangent + 3, manifold.tangent);
     std::copy(delta, delta + 3, manifold.centre_delta);
+    copy_orientation(frames_[pair.row_a], manifold.orientation_a);
+    copy_orientation(frames_[pair.row_b], manifold.orientation_b);
     manifold.axis_separation = geometry.axis_separation;
     manifold.point_count = static_cast<std::uint8_t>(geometry.point_count);
     manifold.axis = static_cast<std::uint8_t>(geometry.axis);
@@ -184,8 +213,6 @@ void PairLook::write_manifold(const Pair& pair,
         const ManifoldPoint& fresh = geometry.points[point];
         manifold.separation[point] = fresh.separation;
         manifold.feature[point] = fresh.feature;
-        std::copy(fresh.local_a, fresh.local_a + 3, manifold.local_a + 3 * point);
-        std::copy(fresh.local_b, fresh.local_b + 3, manifold.local_b + 3 * point);
         rotate(frames_[pair.row_a].rotation, fresh.local_a, manifold.anchor_a + 3 * point);
         for (std::uint32_t former = 0; former < pair.point_count; ++former) {
             const std::uint32_t bit = 1U << former;

@@ -34,6 +34,8 @@ public:
 
     void run(std::int32_t substep_rate, std::int32_t separation_max) {
         load();
+        turn_back(rotation(body_a_), orientation_a_, normal_then_a_);
+        turn_back(rotation(body_b_), orientation_b_, normal_then_b_);
         LOCKWIND_UNROLL
         for (std::uint32_t point = 0; point < points_; ++point) {
             make_separation(point, substep_rate, separation_max);
@@ -142,6 +144,7 @@ private:
     static Vector inverse_radius(const Vector* body) { return body[15]; }
 
     void load();
+    void turn_back(const Vector rotation[9], const Vector orientation[4], Vector out[3]) const;
     void make_separation(std::uint32_t point, std::int32_t rate, std::int32_t separation_max);
     void fill_row(const Jacobian& jacobian, ContactBlock::Row& row);
     Jacobian jacobian_of(const Vector arm_a[3], const Vector arm_b[3], const Vector along[3]) const;
@@ -160,8 +163,10 @@ private:
     Vector axes_[3][4]; // normal, first tangent, second tangent, Q2.30; xyz and what lies behind
     Vector delta_when_made_[4];
     Vector separation_when_made_[kBlockPoints];
-    Vector local_a_[3 * kBlockPoints];
-    Vector local_b_[3 * kBlockPoints];
+    Vector orientation_a_[4];
+    Vector orientation_b_[4];
+    Vector normal_then_a_[3]; // the normal, turned with A from now back to then
+    Vector normal_then_b_[3];
     Vector anchor_a_[3 * kBlockPoints];
     Vector share_a_;
     Vector share_b_;
@@ -180,8 +185,8 @@ void BlockPreparation<L>::load() {
     read_manifolds([](const Manifold& m) { return m.tangent; }, axes_[1]);
     read_manifolds([](const Manifold& m) { return m.centre_delta; }, delta_when_made_);
     read_manifolds([](const Manifold& m) { return m.separation; }, separation_when_made_);
-    read_points([](const Manifold& m) { return m.local_a; }, local_a_);
-    read_points([](const Manifold& m) { return m.local_b; }, local_b_);
+    read_manifolds([](const Manifold& m) { return m.orientation_a; }, orientation_a_);
+    read_manifolds([](const Manifold& m) { return m.orientation_b; }, orientation_b_);
     read_points([](const Manifold& m) { return m.anchor_a; }, anchor_a_);
     cross(axes_[0], axes_[1], axes_[2]);
     const auto narrow = [](Vector unit) {
@@ -205,6 +210,35 @@ void BlockPreparation<L>::load() {
     }
 }
 
+/// The normal as it lay when the manifold was made, to a body that has turned with it since: into
+/// the body's frame as it is, and out of the frame as it was. With it an anchor of then tells how
+/// high it is now, without being turned itself.
+template <class L>
+void BlockPreparation<L>::turn_back(const Vector rotation[9],
+                                    const Vector orientation[4],
+                                    Vector out[3]) const {
+    Vector local[3];
+    LOCKWIND_UNROLL
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vector column[3] = {rotation[axis], rotation[3 + axis], rotation[6 + axis]};
+        local[axis] = dot<kUnitFraction>(column, axes_[0]);
+    }
+    // v + 2 (w (q x v) + q x (q x v)); doubled by the shift.
+    Vector side[3];
+    cross(orientation, local, side);
+    constexpr int kShift = kUnitFraction - 1;
+    LOCKWIND_UNROLL
+    for (int axis = 0; axis < 3; ++axis) {
+        const int next = (axis + 1) % 3;
+        const int last = (axis + 2) % 3;
+        Wide sum = L::add_product(L::template start<kShift>(), local[axis], L::set(1 << kShift));
+        sum = L::add_product(sum, orientation[3], side[axis]);
+        sum = L::add_product(sum, orientation[next], side[last]);
+        sum = L::add_product(sum, L::negate(orientation[last]), side[next]);
+        out[axis] = L::template round<kShift>(sum);
+    }
+}
+
 /// How far apart the surfaces are now, as a velocity that closes it in a substep; and the arms.
 template <class L>
 void BlockPreparation<L>::make_separation(std::uint32_t point,
@@ -218,16 +252,16 @@ void BlockPreparation<L>::make_separation(std::uint32_t point,
         arm_b_[point][axis] =
             L::subtract(arm_a_[point][axis], of_point(point, delta_when_made_[axis]));
     }
-    Vector apart[3];
+    Wide apart = L::template start<kUnitFraction>();
     LOCKWIND_UNROLL
     for (int axis = 0; axis < 3; ++axis) {
-        const Vector now_a = dot<kUnitFraction>(rotation(body_a_) + 3 * axis, local_a_ + 3 * point);
-        const Vector now_b = dot<kUnitFraction>(rotation(body_b_) + 3 * axis, local_b_ + 3 * point);
-        apart[axis] = L::add(lane(terms_.centre_delta[axis]), L::subtract(now_b, now_a));
+        apart = L::add_product(apart, axes_[0][axis], lane(terms_.centre_delta[axis]));
+        apart = L::add_product(apart, normal_then_b_[axis], arm_b_[point][axis]);
+        apart = L::add_product(apart, normal_then_a_[axis], L::negate(arm_a_[point][axis]));
     }
     const Vector base = separation_when_made_[point];
     // Bounded before the change of unit, which multiplies by up to 960.
-    const Vector separation = L::clamp(L::add(base, dot<kUnitFraction>(axes_[0], apart)),
+    const Vector separation = L::clamp(L::add(base, L::template round<kUnitFraction>(apart)),
                                        L::set(-separation_max),
                                        L::set(separation_max));
     set_lane(block_.point[point].separation,

@@ -1,6 +1,7 @@
 #include "dynamics/make_body.h"
 #include "dynamics/pairing.h"
 #include "dynamics/solver_format.h"
+#include "geometry/rotation.h"
 #include "systems/motion.h"
 #include "world/impl.h"
 
@@ -10,12 +11,20 @@ namespace lockwind {
 
 namespace {
 
-/// A point of the body, m, from its frame.
-Vec3 place_of(const BodyMotion& motion, const std::int32_t local[3], bool turns) {
-    const Vec3 arm{convert<Real>(Length::from_raw(local[0])),
-                   convert<Real>(Length::from_raw(local[1])),
-                   convert<Real>(Length::from_raw(local[2]))};
-    return read_position(motion) + (turns ? rotate(read_orientation(motion), arm) : arm);
+/// Where a point of the body is now, m, that was at `arm` (Q9.22 m) from its centre when the body
+/// was turned by `orientation`; the identity for a sphere, whose contacts do not turn with it.
+Vec3 place_of(const BodyMotion& motion,
+              const std::int32_t arm[3],
+              const std::int32_t orientation[4],
+              bool turns) {
+    std::int32_t then[9];
+    std::int32_t local[3];
+    rotation_matrix(orientation, then);
+    inverse_rotate(then, arm, local);
+    const Vec3 place{convert<Real>(Length::from_raw(local[0])),
+                     convert<Real>(Length::from_raw(local[1])),
+                     convert<Real>(Length::from_raw(local[2]))};
+    return read_position(motion) + (turns ? rotate(read_orientation(motion), place) : place);
 }
 
 /// N from an impulse x (1/m_a + 1/m_b) of one substep.
@@ -44,8 +53,13 @@ ContactView view_of(const DynamicsTables& tables, const Pair& pair, std::int64_t
     view.point_count = pair.point_count;
     constexpr auto kSphere = static_cast<std::uint8_t>(ShapeType::sphere);
     for (std::uint32_t index = 0; index < pair.point_count; ++index) {
-        const Vec3 of_a_now = place_of(a, manifold.local_a + 3 * index, of_a.shape != kSphere);
-        const Vec3 of_b_now = place_of(b, manifold.local_b + 3 * index, of_b.shape != kSphere);
+        const std::int32_t* arm_a = manifold.anchor_a + 3 * index;
+        std::int32_t arm_b[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            arm_b[axis] = raw_subtract(arm_a[axis], manifold.centre_delta[axis]);
+        }
+        const Vec3 of_a_now = place_of(a, arm_a, manifold.orientation_a, of_a.shape != kSphere);
+        const Vec3 of_b_now = place_of(b, arm_b, manifold.orientation_b, of_b.shape != kSphere);
         ContactView::Point& point = view.points[index];
         point.position = (of_a_now + of_b_now) / Real(2);
         point.separation = convert<Real>(Length::from_raw(manifold.separation[index])) +

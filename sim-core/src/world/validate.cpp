@@ -231,16 +231,8 @@ const char* bad_point_field(const Manifold& manifold,
                             std::uint32_t point,
                             std::int64_t longest_a,
                             std::int64_t longest_b) {
-    const std::int32_t* local_a = manifold.local_a + 3 * point;
-    const std::int32_t* local_b = manifold.local_b + 3 * point;
     const std::int32_t* anchor_a = manifold.anchor_a + 3 * point;
     const std::int32_t* delta = manifold.centre_delta;
-    if (!is_within({local_a[0], local_a[1], local_a[2]}, longest_a)) {
-        return "local_a";
-    }
-    if (!is_within({local_b[0], local_b[1], local_b[2]}, longest_b)) {
-        return "local_b";
-    }
     if (!is_within({anchor_a[0], anchor_a[1], anchor_a[2]}, longest_a)) {
         return "anchor_a";
     }
@@ -257,9 +249,7 @@ bool is_unused(const Manifold& manifold, std::uint32_t point) {
     const auto is_zero = [](std::int32_t value) { return value == 0; };
     return manifold.normal_impulse[point] == 0 && manifold.separation[point] == 0 &&
            manifold.feature[point] == 0 &&
-           std::all_of(manifold.anchor_a + 3 * point, manifold.anchor_a + 3 * point + 3, is_zero) &&
-           std::all_of(manifold.local_a + 3 * point, manifold.local_a + 3 * point + 3, is_zero) &&
-           std::all_of(manifold.local_b + 3 * point, manifold.local_b + 3 * point + 3, is_zero);
+           std::all_of(manifold.anchor_a + 3 * point, manifold.anchor_a + 3 * point + 3, is_zero);
 }
 
 const char* bad_manifold_field(const DynamicsTables& tables, const Manifold& manifold) {
@@ -277,6 +267,9 @@ const char* bad_manifold_field(const DynamicsTables& tables, const Manifold& man
     }
     if (!is_unit(manifold.normal) || !is_unit(manifold.tangent)) {
         return "normal";
+    }
+    if (!is_unit(manifold.orientation_a) || !is_unit(manifold.orientation_b)) {
+        return "orientation_a or orientation_b";
     }
     if (!all_within(manifold.friction_impulse, kFrictionImpulseMax) ||
         !all_within({&manifold.twist_impulse, 1}, kFrictionImpulseMax)) {

@@ -202,8 +202,12 @@ struct PairDraw {
             fill(manifold.centre_delta, dice);
             fill(manifold.separation, dice);
             fill(manifold.anchor_a, dice);
-            fill(manifold.local_a, dice);
-            fill(manifold.local_b, dice);
+            for (std::int32_t(*orientation)[4] :
+                 {&manifold.orientation_a, &manifold.orientation_b}) {
+                for (std::int32_t& component : *orientation) {
+                    component = between(dice, -(1 << 29), 1 << 29);
+                }
+            }
             terms.manifold[lane] = &manifold;
             terms.body_a[lane] = &bodies[block.row_a[lane]];
             terms.body_b[lane] = &bodies[block.row_b[lane]];

@@ -265,7 +265,7 @@ TEST(Snapshot, RefusesDamagedContacts) {
          [](World& w) {
              const Manifold& m = manifold(w);
              const auto* bodies = rows<BodyProperties>(w, section::kBodyProperties);
-             manifold(w).local_b[1] = bodies[m.row_b].bounding_radius * 3 / 2;
+             manifold(w).anchor_a[1] = m.centre_delta[1] + bodies[m.row_b].bounding_radius * 3 / 2;
          }},
         {"a point past the count",
          [](World& w) {
@@ -279,7 +279,7 @@ TEST(Snapshot, RefusesDamagedContacts) {
         {"friction impulse", [](World& w) { manifold(w).friction_impulse[1] = 0x7fffffff; }},
         {"twist impulse", [](World& w) { manifold(w).twist_impulse = -0x7fffffff; }},
         {"anchor", [](World& w) { manifold(w).anchor_a[1] = 0x7fffffff; }},
-        {"local", [](World& w) { manifold(w).local_b[0] = 0x7fffffff; }},
+        {"orientation", [](World& w) { manifold(w).orientation_b[3] /= 2; }},
         {"centre delta", [](World& w) { manifold(w).centre_delta[2] = 0x7fffffff; }},
         {"separation", [](World& w) { manifold(w).separation[0] = -0x7fffffff; }},
         {"padding", [](World& w) { manifold(w).zero[1] = 1; }},
