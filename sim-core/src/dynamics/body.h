@@ -24,7 +24,9 @@ struct BodyMotion {
 };
 static_assert(sizeof(BodyMotion) == 104);
 
-/// What a body is: row of "body_properties", same row as its BodyMotion. Written on creation only.
+/// What a body is. Bodies that are the same share a row of "body_kind"; the derived section
+/// "body_properties" has it once more for each body, in the same row as its BodyMotion. Written on
+/// creation only.
 struct BodyProperties {
     std::int64_t inverse_mass;    // Q24.40 1/kg; 0 unless dynamic
     std::int32_t size[3];         // Q9.22 m: box half extents; sphere radius; capsule radius,
@@ -45,12 +47,18 @@ struct BodyProperties {
     std::uint8_t friction_rule;       // CombineRule
     std::uint8_t restitution_rule;    // CombineRule
     std::uint8_t zero;
+    std::uint16_t hull;     // index into the world's ShapeLibrary; 0 unless a hull
+    std::uint16_t zero_end; // int64 is aligned to 8 on some machines
+};
+static_assert(sizeof(BodyProperties) == 80);
+
+/// What else a body has to itself: row of "body_life", same row as its BodyMotion.
+struct BodyLife {
+    std::uint32_t body_kind;    // row of section "body_kind"
     std::uint32_t spawn_count;  // bodies this one has spawned
     std::uint32_t despawn_tick; // low 32 bits of the tick that destroys it; 0 for never
-    std::uint16_t hull;         // index into the world's ShapeLibrary; 0 unless a hull
-    std::uint16_t zero_end;     // int64 is aligned to 8 on some machines
 };
-static_assert(sizeof(BodyProperties) == 88);
+static_assert(sizeof(BodyLife) == 12);
 
 /// How far a body may move before the narrow phase looks at its pairs again. A touching pair of
 /// flat shapes bears more motion than others.
@@ -99,10 +107,14 @@ inline constexpr std::array kBodyPropertiesFields{
     LOCKWIND_FIELD(BodyProperties, friction_rule, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, restitution_rule, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, zero, 0, "", ""),
-    LOCKWIND_FIELD(BodyProperties, spawn_count, 0, "", ""),
-    LOCKWIND_FIELD(BodyProperties, despawn_tick, 0, "tick", ""),
     LOCKWIND_FIELD(BodyProperties, hull, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, zero_end, 0, "", ""),
+};
+
+inline constexpr std::array kBodyLifeFields{
+    LOCKWIND_FIELD(BodyLife, body_kind, 0, "", ""),
+    LOCKWIND_FIELD(BodyLife, spawn_count, 0, "", ""),
+    LOCKWIND_FIELD(BodyLife, despawn_tick, 0, "tick", ""),
 };
 
 inline constexpr std::array kBodySleepFields{

@@ -29,9 +29,12 @@ struct DynamicsSettings {
     std::uint32_t joint_capacity = 0;
 };
 
-/// Views of the arena's sections; motion, properties and sleep have the same rows.
+/// Views of the arena's sections; motion, properties, lives and sleep have the same rows. The step
+/// itself needs neither kinds nor lives.
 struct DynamicsTables {
     Table<BodyMotion> motion;
+    Table<BodyProperties> kinds;
+    Table<BodyLife> lives;
     Table<BodyProperties> properties;
     Table<BodySleep> sleep;
     Table<Pair> pairs;

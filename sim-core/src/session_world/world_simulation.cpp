@@ -43,7 +43,7 @@ std::optional<std::uint32_t> row_to_corrupt(const World& world, std::uint32_t se
     if (world.row_count(section) == 0) {
         return std::nullopt;
     }
-    if (section == section::kBody || section == section::kBodyProperties ||
+    if (section == section::kBody || section == section::kBodyLife ||
         section == section::kBodySleep) {
         for (BodyRow row = 0; row < world.body_count(); ++row) {
             const BodyView body = world.body_at(row);

@@ -270,7 +270,8 @@ void PodSystem::spawn_balls(const DynamicsTables& tables,
         }
         const Parameters& pod = pods_[slot];
         const BodyMotion& motion = tables.motion[row];
-        BodyProperties& properties = tables.properties[row];
+        const BodyProperties& properties = tables.properties[row];
+        BodyLife& life = tables.lives[row];
         const Real sideways = random_symmetric(seed, player.body, player.draw_count) * kSpread;
         const Real upwards = random_symmetric(seed, player.body, player.draw_count + 1) * kSpread;
         player.draw_count += 2;
@@ -279,15 +280,15 @@ void PodSystem::spawn_balls(const DynamicsTables& tables,
         const Real reach = convert<Real>(Length::from_raw(properties.bounding_radius)) +
                            convert<Real>(Length::from_raw(pod.ball.properties.bounding_radius)) +
                            kMuzzleGap;
-        ++properties.spawn_count;
+        ++life.spawn_count;
         BodyRecord ball = pod.ball;
-        ball.motion.id = spawned_id(player.body, properties.spawn_count);
+        ball.motion.id = spawned_id(player.body, life.spawn_count);
         write_position(read_position(motion) + direction * reach, ball.motion);
         write_velocity(read_velocity(motion.linear_velocity) + direction * pod.ball_speed,
                        ball.motion.linear_velocity);
         // 0 would be never; the tick after it is as good.
         const auto despawn_tick = static_cast<std::uint32_t>(tick + pod.lifetime_ticks);
-        ball.properties.despawn_tick = despawn_tick == 0 ? 1 : despawn_tick;
+        ball.life.despawn_tick = despawn_tick == 0 ? 1 : despawn_tick;
         spawner.create(ball);
     }
 }

@@ -8,12 +8,14 @@ namespace {
 
 void move_body(const DynamicsTables& tables, BodyRow from, BodyRow to) {
     tables.motion[to] = tables.motion[from];
+    tables.lives[to] = tables.lives[from];
     tables.properties[to] = tables.properties[from];
     tables.sleep[to] = tables.sleep[from];
 }
 
 void set_body_count(const DynamicsTables& tables, std::uint32_t count) {
     tables.motion.set_count(count);
+    tables.lives.set_count(count);
     tables.properties.set_count(count);
     tables.sleep.set_count(count);
 }
@@ -31,7 +33,7 @@ BodyRow row_of(const Table<BodyMotion>& motion, BodyId id) {
 }
 
 Spawner::Spawner(std::uint32_t body_capacity, std::uint32_t create_capacity)
-    : destroyed_(body_capacity, 0) {
+    : destroyed_(body_capacity, 0), kinds_(body_capacity) {
     created_.reserve(create_capacity);
     new_row_of_.reserve(body_capacity);
 }
@@ -74,11 +76,45 @@ void Spawner::number_rows(const Table<BodyMotion>& motion) {
     }
 }
 
-bool Spawner::is_despawn_due(const Table<BodyProperties>& properties, std::uint32_t tick) {
+void Spawner::find_kinds(const DynamicsTables& tables) {
+    kinds_.begin();
+    for (BodyRow row = 0; row < tables.motion.count(); ++row) {
+        tables.lives[row].body_kind = kinds_.take(tables.kinds, tables.properties[row]);
+    }
+}
+
+void Spawner::redefine(const DynamicsTables& tables,
+                       BodyRow row,
+                       const BodyProperties& properties) {
+    kinds_.know(tables.kinds, tables.lives);
+    kinds_.release(tables.kinds, tables.lives[row].body_kind);
+    tables.lives[row].body_kind = kinds_.take(tables.kinds, properties);
+    tables.properties[row] = properties;
+}
+
+/// Of the bodies that go.
+void Spawner::release_kinds(const DynamicsTables& tables) {
+    kinds_.know(tables.kinds, tables.lives);
+    for (BodyRow row = 0; row < tables.motion.count() && destroyed_count_ != 0; ++row) {
+        if (destroyed_[row] != 0) {
+            kinds_.release(tables.kinds, tables.lives[row].body_kind);
+        }
+    }
+}
+
+/// Of the bodies that came.
+void Spawner::take_kinds(const DynamicsTables& tables) {
+    for (const BodyRecord& body : created_) {
+        tables.lives[row_of(tables.motion, body.motion.id)].body_kind =
+            kinds_.take(tables.kinds, body.properties);
+    }
+}
+
+bool Spawner::is_despawn_due(const Table<BodyLife>& lives, std::uint32_t tick) {
     if (!despawn_known_) {
         despawn_known_ = true;
         despawn_tick_ = 0;
-        for (const BodyProperties& body : properties.rows()) {
+        for (const BodyLife& body : lives.rows()) {
             // Ticks wrap: the nearest one ahead counts.
             const bool is_next =
                 despawn_tick_ == 0 || body.despawn_tick - tick < despawn_tick_ - tick;
@@ -94,13 +130,14 @@ StepFault Spawner::apply(const DynamicsTables& tables) {
     if (created_.empty() && destroyed_count_ == 0) {
         return StepFault::none;
     }
-    forget_despawns();
+    despawn_known_ = false;
     sort_created();
     const std::uint32_t old_count = tables.motion.count();
     const std::uint32_t kept = old_count - destroyed_count_;
     const auto count = static_cast<std::uint32_t>(kept + created_.size());
     const bool fits = count <= tables.motion.capacity();
     if (fits) {
+        release_kinds(tables);
         number_rows(tables.motion);
         remap_rows(tables, new_row_of_);
         BodyRow packed = 0;
@@ -124,9 +161,11 @@ StepFault Spawner::apply(const DynamicsTables& tables) {
             }
             --target;
             tables.motion[target] = body.motion;
+            tables.lives[target] = body.life;
             tables.properties[target] = body.properties;
             tables.sleep[target] = BodySleep{};
         }
+        take_kinds(tables);
     }
     created_.clear();
     std::fill_n(destroyed_.begin(), old_count, std::uint8_t{0});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "dynamics/body_kinds.h"
 #include "dynamics/dynamics.h"
 
 #include "lockwind/types.h"
@@ -10,10 +11,11 @@
 
 namespace lockwind {
 
-/// Both rows of a body.
+/// The rows of a body; its kind is found when it comes into the tables.
 struct BodyRecord {
     BodyMotion motion;
     BodyProperties properties;
+    BodyLife life;
 };
 
 /// Row of the body of that id, by binary search; kNoIndex where there is none.
@@ -28,7 +30,7 @@ constexpr BodyId spawned_id(BodyId spawner, std::uint32_t spawn_count) {
 }
 
 /// Collects bodies to make and to destroy, then merges them into the id-sorted tables at once.
-/// Empty between ticks: no state, but a note of when the next one is due.
+/// Empty between ticks: no state, but notes of when the next one is due and of who is of a kind.
 /// Allocates on construction only.
 class Spawner {
 public:
@@ -44,11 +46,23 @@ public:
     std::span<const BodyRecord> created() const { return created_; }
     void sort_created();
 
-    /// Whether bodies of the tables are due to go in this tick, see BodyProperties::despawn_tick.
-    /// Looks at all of them only where some came or went, or are due.
-    bool is_despawn_due(const Table<BodyProperties>& properties, std::uint32_t tick);
+    /// Whether bodies of the tables are due to go in this tick, see BodyLife::despawn_tick. Looks
+    /// at all of them only where some came or went, or are due.
+    bool is_despawn_due(const Table<BodyLife>& lives, std::uint32_t tick);
     /// The tables are not those of before.
-    void forget_despawns() { despawn_known_ = false; }
+    void forget() {
+        despawn_known_ = false;
+        kinds_.forget();
+    }
+
+    /// Of tables without kinds: gives each body its own.
+    void find_kinds(const DynamicsTables& tables);
+    /// Gives a body other properties.
+    void redefine(const DynamicsTables& tables, BodyRow row, const BodyProperties& properties);
+    /// Whether the kinds are such as this class leaves them; see BodyKinds::read.
+    bool check_kinds(const DynamicsTables& tables) {
+        return kinds_.read(tables.kinds, tables.lives);
+    }
 
     /// Makes tables of the bodies that stay and the new ones, in id order, and renumbers pairs and
     /// manifolds. Empties the queues. bodies_full leaves the tables as they were.
@@ -56,11 +70,14 @@ public:
 
 private:
     void number_rows(const Table<BodyMotion>& motion);
+    void release_kinds(const DynamicsTables& tables);
+    void take_kinds(const DynamicsTables& tables);
 
     std::vector<BodyRecord> created_;
     std::vector<std::uint8_t> destroyed_; // by row
     std::uint32_t destroyed_count_ = 0;
     std::vector<BodyRow> new_row_of_; // by row before the merge
+    BodyKinds kinds_;
     bool despawn_known_ = false;
     std::uint32_t despawn_tick_ = 0; // the next one where it is known; 0: none
 };

@@ -30,6 +30,8 @@ std::array<std::uint32_t, section::kCount> capacities_of(const DynamicsSettings&
     rows[section::kArena] = 1;
     rows[section::kGlobals] = 1;
     rows[section::kBody] = capacities.body_capacity;
+    rows[section::kBodyKind] = capacities.body_capacity;
+    rows[section::kBodyLife] = capacities.body_capacity;
     rows[section::kBodyProperties] = capacities.body_capacity;
     rows[section::kBodySleep] = capacities.body_capacity;
     rows[section::kPair] = capacities.pair_capacity;
@@ -50,6 +52,7 @@ Status make_bodies(const WorldDefinition& definition,
         return a->id < b->id;
     });
     tables.motion.set_count(static_cast<std::uint32_t>(sorted.size()));
+    tables.lives.set_count(static_cast<std::uint32_t>(sorted.size()));
     tables.properties.set_count(static_cast<std::uint32_t>(sorted.size()));
     tables.sleep.set_count(static_cast<std::uint32_t>(sorted.size()));
     for (BodyRow row = 0; row < sorted.size(); ++row) {
@@ -107,6 +110,8 @@ World::Impl::Impl(const WorldDefinition& definition,
 
 DynamicsTables World::Impl::tables_of(StateArena& arena) {
     return {arena.table<BodyMotion>(section::kBody),
+            arena.table<BodyProperties>(section::kBodyKind),
+            arena.table<BodyLife>(section::kBodyLife),
             arena.table<BodyProperties>(section::kBodyProperties),
             arena.table<BodySleep>(section::kBodySleep),
             arena.table<Pair>(section::kPair),
@@ -149,12 +154,13 @@ Result<WorldPtr> World::create(const WorldDefinition& definition, Simd simd) {
         impl->players()[slot] = players[slot];
         const BodyRow row = row_of(tables.motion, players[slot].body);
         tables.properties[row].can_sleep = 0; // its player may move at any tick
-        BodyRecord start{tables.motion[row], tables.properties[row]};
+        BodyRecord start{tables.motion[row], tables.properties[row], {}};
         write_velocity({}, start.motion.linear_velocity);
         write_velocity({}, start.motion.angular_velocity);
         impl->pod_starts.push_back(start);
         impl->pod_ids.push_back(players[slot].body);
     }
+    impl->spawner.find_kinds(tables);
     return WorldPtr(new World(std::move(impl)));
 }
 

@@ -31,6 +31,8 @@ struct World::Impl {
     static DynamicsTables tables_of(StateArena& arena);
     Error fault_error();
     void begin_anew();
+    /// Makes the derived sections anew.
+    void derive(const DynamicsTables& rows);
     /// Whether a state can be stepped; see validate.h.
     Status validate(StateArena& state, const DynamicsTables* known);
 

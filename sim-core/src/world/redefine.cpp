@@ -36,7 +36,7 @@ Status World::redefine_body(const BodyDefinition& definition) {
     if (slot_of(impl_->players(), definition.id) != kNoIndex) {
         return Error{subject + "is a player's pod"};
     }
-    const BodyRecord before{tables.motion[row], tables.properties[row]};
+    const BodyRecord before{tables.motion[row], tables.properties[row], tables.lives[row]};
     BodyRecord made{};
     if (Status status =
             make_body(definition, impl_->settings, impl_->shapes, made.motion, made.properties);
@@ -49,8 +49,6 @@ Status World::redefine_body(const BodyDefinition& definition) {
     if (definition.mode != BodyMode::fixed && is_outside(made.motion, impl_->settings.bounds)) {
         return Error{subject + "position lies outside of settings.bounds"};
     }
-    made.properties.spawn_count = before.properties.spawn_count;
-    made.properties.despawn_tick = before.properties.despawn_tick;
     tables.motion[row] = made.motion;
     tables.properties[row] = made.properties;
     if (const Joint* joint = bad_joint(tables, row); joint != nullptr) {
@@ -59,6 +57,7 @@ Status World::redefine_body(const BodyDefinition& definition) {
         return Error{subject + "joint " + std::to_string(joint->id) +
                      " cannot hold it then: " + "one of its bodies must be dynamic"};
     }
+    impl_->spawner.redefine(tables, row, made.properties);
     impl_->query_index.drop();
     drop_contacts(tables, row);
     tables.sleep[row] = BodySleep{};

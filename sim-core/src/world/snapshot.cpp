@@ -17,7 +17,13 @@ Status World::Impl::validate(StateArena& state, const DynamicsTables* known) {
     if (Status status = check_players(state_players, pod_ids); !status) {
         return status;
     }
-    if (Status status = check_bodies(rows, known, settings, shapes); !status) {
+    const Status kinds = check_kinds(rows, known, spawner, settings, shapes);
+    spawner.forget(); // the state that was checked may not be the world's
+    if (!kinds) {
+        return kinds;
+    }
+    expand_kinds(rows.kinds, rows.lives, rows.properties);
+    if (Status status = check_bodies(rows); !status) {
         return status;
     }
     if (Status status = check_joints(rows); !status) {
@@ -64,7 +70,7 @@ void World::restore(std::span<const std::byte> kept) {
 void World::Impl::begin_anew() {
     events.clear();
     query_index.drop();
-    spawner.forget_despawns();
+    spawner.forget();
     fault = StepFault::none;
 }
 
@@ -87,11 +93,16 @@ Status World::check() const {
     return impl_->validate(impl_->arena, nullptr);
 }
 
+void World::Impl::derive(const DynamicsTables& rows) {
+    expand_kinds(rows.kinds, rows.lives, rows.properties);
+    dynamics.derive_pairs(rows);
+}
+
 void World::drop_derived() {
     impl_->dynamics.drop_caches();
-    impl_->dynamics.derive_pairs(impl_->tables());
+    impl_->derive(impl_->tables());
+    impl_->spawner.forget();
     impl_->query_index.drop();
-    impl_->spawner.forget_despawns();
 }
 
 } // namespace lockwind

@@ -29,34 +29,39 @@ struct RowCounts {
     std::uint32_t arena;
     std::uint32_t globals;
     std::uint32_t body;
-    std::uint32_t body_properties;
+    std::uint32_t body_kind;
+    std::uint32_t body_life;
     std::uint32_t body_sleep;
     std::uint32_t manifold;
     std::uint32_t joint;
     std::uint32_t player;
 };
-static_assert(sizeof(RowCounts) == 32);
+static_assert(sizeof(RowCounts) == 36);
 
 /// Sections by number, in the order of kWorldSections.
 namespace section {
 inline constexpr std::uint32_t kArena = 0;
 inline constexpr std::uint32_t kGlobals = 1;
 inline constexpr std::uint32_t kBody = 2;
-inline constexpr std::uint32_t kBodyProperties = 3;
-inline constexpr std::uint32_t kBodySleep = 4;
-inline constexpr std::uint32_t kManifold = 5;
-inline constexpr std::uint32_t kJoint = 6;
-inline constexpr std::uint32_t kPlayer = 7;
-inline constexpr std::uint32_t kStateCount = 8;
-inline constexpr std::uint32_t kPair = 8; // derived
-inline constexpr std::uint32_t kCount = 9;
+inline constexpr std::uint32_t kBodyKind = 3;
+inline constexpr std::uint32_t kBodyLife = 4;
+inline constexpr std::uint32_t kBodySleep = 5;
+inline constexpr std::uint32_t kManifold = 6;
+inline constexpr std::uint32_t kJoint = 7;
+inline constexpr std::uint32_t kPlayer = 8;
+inline constexpr std::uint32_t kStateCount = 9;
+// Derived.
+inline constexpr std::uint32_t kBodyProperties = 9;
+inline constexpr std::uint32_t kPair = 10;
+inline constexpr std::uint32_t kCount = 11;
 } // namespace section
 
 inline constexpr std::array kRowCountsFields{
     LOCKWIND_FIELD(RowCounts, arena, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, globals, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, body, 0, "", ""),
-    LOCKWIND_FIELD(RowCounts, body_properties, 0, "", ""),
+    LOCKWIND_FIELD(RowCounts, body_kind, 0, "", ""),
+    LOCKWIND_FIELD(RowCounts, body_life, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, body_sleep, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, manifold, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, joint, 0, "", ""),
@@ -76,11 +81,13 @@ inline constexpr std::array<SectionDescriptor, section::kCount> kWorldSections{{
     {"arena", "base", sizeof(RowCounts), false, "", kRowCountsFields},
     {"globals", "world", sizeof(Globals), false, "", kGlobalsFields},
     {"body", "dynamics", sizeof(BodyMotion), false, "id", kBodyMotionFields},
-    {"body_properties", "dynamics", sizeof(BodyProperties), false, "", kBodyPropertiesFields},
+    {"body_kind", "dynamics", sizeof(BodyProperties), false, "", kBodyPropertiesFields},
+    {"body_life", "dynamics", sizeof(BodyLife), false, "", kBodyLifeFields},
     {"body_sleep", "dynamics", sizeof(BodySleep), false, "", kBodySleepFields},
     {"manifold", "dynamics", sizeof(Manifold), false, "", kManifoldFields},
     {"joint", "dynamics", sizeof(Joint), false, "id", kJointFields},
     {"player", "systems", sizeof(Player), false, "", kPlayerFields},
+    {"body_properties", "dynamics", sizeof(BodyProperties), true, "", kBodyPropertiesFields},
     {"pair", "dynamics", sizeof(Pair), true, "", kPairFields},
 }};
 

@@ -231,9 +231,9 @@ void Step::destroy(BodyRow row) {
 }
 
 void Step::despawn() {
-    if (world_.spawner.is_despawn_due(tables_.properties, tick_low())) {
+    if (world_.spawner.is_despawn_due(tables_.lives, tick_low())) {
         for (BodyRow row = 0; row < tables_.motion.count(); ++row) {
-            if (tables_.properties[row].despawn_tick == tick_low()) {
+            if (tables_.lives[row].despawn_tick == tick_low()) {
                 destroy(row);
             }
         }
@@ -278,7 +278,7 @@ void Step::remove_outside(BodyRow row) {
 void Step::return_pod(Slot slot, BodyRow row) {
     world_.spawner.destroy(row);
     BodyRecord pod = world_.pod_starts[slot];
-    pod.properties.spawn_count = tables_.properties[row].spawn_count;
+    pod.life.spawn_count = tables_.lives[row].spawn_count;
     world_.spawner.create(pod);
     world_.events.add(EventType::respawned, id(row), 0, 0);
 }

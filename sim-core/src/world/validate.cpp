@@ -141,6 +141,12 @@ bool is_buildable(const BodyProperties& properties,
            same_build(built.properties, properties);
 }
 
+/// Of a row of body_kind that no body has.
+bool is_free(const BodyProperties& kind) {
+    constexpr BodyProperties kFree{};
+    return std::memcmp(&kind, &kFree, sizeof(kFree)) == 0;
+}
+
 const char* bad_properties_field(const BodyProperties& properties) {
     const bool dynamic = properties.mode == static_cast<std::uint8_t>(BodyMode::dynamic);
     // 1 / kBodyMassMax and 1 / kBodyMassMin, Q24.40.
@@ -177,7 +183,7 @@ const char* bad_properties_field(const BodyProperties& properties) {
     if (properties.zero != 0 || properties.zero_end != 0) {
         return "zero";
     }
-    return properties.spawn_count > kSpawnCountMax ? "spawn_count" : nullptr;
+    return nullptr;
 }
 
 /// A body that sleeps does not move.
@@ -327,28 +333,46 @@ Status check_players(const Table<Player>& players, std::span<const BodyId> pods)
     return Success{};
 }
 
-Status check_bodies(const DynamicsTables& tables,
-                    const DynamicsTables* known,
-                    const WorldSettings& settings,
-                    const ShapeLibrary& shapes) {
+Status check_kinds(const DynamicsTables& tables,
+                   const DynamicsTables* known,
+                   Spawner& spawner,
+                   const WorldSettings& settings,
+                   const ShapeLibrary& shapes) {
     const std::uint32_t count = tables.motion.count();
-    if (tables.properties.count() != count || tables.sleep.count() != count) {
+    if (tables.lives.count() != count || tables.sleep.count() != count) {
         return Error{
-            "snapshot: sections \"body\", \"body_properties\" and \"body_sleep\" differ in rows"};
+            "snapshot: sections \"body\", \"body_life\" and \"body_sleep\" differ in rows"};
     }
-    for (BodyRow row = 0; row < count; ++row) {
+    if (!spawner.check_kinds(tables)) {
+        return Error{"snapshot: body_life: a body without a kind, or body_kind: one twice, or one "
+                     "that no body has"};
+    }
+    for (std::uint32_t row = 0; row < tables.kinds.count(); ++row) {
+        const BodyProperties& kind = tables.kinds[row];
+        if (is_free(kind)) {
+            continue;
+        }
+        const bool is_known =
+            known != nullptr && row < known->kinds.count() && same_build(known->kinds[row], kind);
+        if (!is_known && !is_buildable(kind, settings, shapes)) {
+            return bad("body_kind", row, "mode, shape, hull, size or inertia");
+        }
+        if (const char* field = bad_properties_field(kind); field != nullptr) {
+            return bad("body_kind", row, field);
+        }
+    }
+    return Success{};
+}
+
+Status check_bodies(const DynamicsTables& tables) {
+    for (BodyRow row = 0; row < tables.motion.count(); ++row) {
         const BodyMotion& motion = tables.motion[row];
         const BodyProperties& properties = tables.properties[row];
         if (motion.id == 0 || (row > 0 && tables.motion[row - 1].id >= motion.id)) {
             return bad("body", row, "id");
         }
-        const bool is_known = known != nullptr && row < known->properties.count() &&
-                              same_build(known->properties[row], properties);
-        if (!is_known && !is_buildable(properties, settings, shapes)) {
-            return bad("body_properties", row, "mode, shape, hull, size or inertia");
-        }
-        if (const char* field = bad_properties_field(properties); field != nullptr) {
-            return bad("body_properties", row, field);
+        if (is_free(properties)) {
+            return bad("body_life", row, "body_kind");
         }
         if (const char* field = bad_motion_field(motion, properties); field != nullptr) {
             return bad("body", row, field);
@@ -359,9 +383,12 @@ Status check_bodies(const DynamicsTables& tables,
         }
         const BodyRow spawner =
             spawner_of(motion.id) != 0 ? row_of(tables.motion, spawner_of(motion.id)) : kNoIndex;
+        if (tables.lives[row].spawn_count > kSpawnCountMax) {
+            return bad("body_life", row, "spawn_count");
+        }
         if (spawner != kNoIndex &&
-            static_cast<std::uint32_t>(motion.id) > tables.properties[spawner].spawn_count) {
-            return bad("body_properties", spawner, "spawn_count");
+            static_cast<std::uint32_t>(motion.id) > tables.lives[spawner].spawn_count) {
+            return bad("body_life", spawner, "spawn_count");
         }
     }
     return Success{};

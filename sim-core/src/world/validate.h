@@ -2,6 +2,7 @@
 
 #include "dynamics/dynamics.h"
 #include "systems/player.h"
+#include "systems/spawn.h"
 #include "world/state.h"
 
 #include "lockwind/result.h"
@@ -21,11 +22,14 @@ namespace lockwind {
 
 Status check_globals(const Table<Globals>& globals);
 Status check_players(const Table<Player>& players, std::span<const BodyId> pods);
-/// `known`, where given, is a sound state: what its bodies are built of is not made anew.
-Status check_bodies(const DynamicsTables& tables,
-                    const DynamicsTables* known,
-                    const WorldSettings& settings,
-                    const ShapeLibrary& shapes);
+/// `known`, where given, is a sound state: what its kinds are built of is not made anew.
+Status check_kinds(const DynamicsTables& tables,
+                   const DynamicsTables* known,
+                   Spawner& spawner,
+                   const WorldSettings& settings,
+                   const ShapeLibrary& shapes);
+/// Of sound kinds, whose properties the bodies have.
+Status check_bodies(const DynamicsTables& tables);
 /// Of bodies that are sound.
 Status check_joints(const DynamicsTables& tables);
 /// Of sound bodies. Makes the pairs anew, which follow from the rest.

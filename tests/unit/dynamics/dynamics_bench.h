@@ -126,6 +126,8 @@ public:
 
     DynamicsTables tables() {
         return {{state_.motion.data(), &state_.motion_count, capacity_},
+                {nullptr, &no_kinds_, 0},
+                {nullptr, &no_kinds_, 0},
                 {state_.properties.data(), &state_.properties_count, capacity_},
                 {state_.sleep.data(), &state_.sleep_count, capacity_},
                 {state_.pairs.data(), &state_.pair_count, pair_capacity()},
@@ -192,6 +194,7 @@ public:
 private:
     WorldSettings settings_;
     std::uint32_t sleep_ticks_ = 0;
+    std::uint32_t no_kinds_ = 0;
     std::uint32_t capacity_;
     std::uint32_t pair_capacity_;
     std::uint32_t manifold_capacity_;

@@ -65,8 +65,6 @@ TEST(MakeBody, FillsTheRowsOfABox) {
     EXPECT_EQ(properties.restitution, 0);
     EXPECT_EQ(properties.mode, static_cast<std::uint8_t>(BodyMode::dynamic));
     EXPECT_EQ(properties.shape, static_cast<std::uint8_t>(ShapeType::box));
-    EXPECT_EQ(properties.spawn_count, 0U);
-    EXPECT_EQ(properties.despawn_tick, 0U);
 }
 
 TEST(MakeBody, GyrationRadiusScalesInertiaAndAngularVelocity) {

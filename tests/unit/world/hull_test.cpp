@@ -277,13 +277,16 @@ TEST(HullSnapshot, RefusesHullsAndAxesThatAreNot) {
         EXPECT_TRUE(world->load(sound).ok());
         return !world->load(damaged).ok();
     };
-    const auto properties = [&] { return rows<BodyProperties>(*world, section::kBodyProperties); };
+    const auto kind_of = [&](BodyRow row) -> BodyProperties& {
+        const BodyLife* lives = rows<BodyLife>(*world, section::kBodyLife);
+        return rows<BodyProperties>(*world, section::kBodyKind)[lives[row].body_kind];
+    };
     const auto manifolds = [&] { return rows<Manifold>(*world, section::kManifold); };
-    EXPECT_TRUE(refuses([&] { properties()[1].hull = 2; }));
-    EXPECT_TRUE(refuses([&] { properties()[1].hull = 1; })); // another build
-    EXPECT_TRUE(refuses([&] { properties()[0].hull = 1; })); // a plane has none
-    EXPECT_TRUE(refuses([&] { properties()[1].shape = 2; }));
-    EXPECT_TRUE(refuses([&] { properties()[1].size[0] = 1; }));
+    EXPECT_TRUE(refuses([&] { kind_of(1).hull = 2; }));
+    EXPECT_TRUE(refuses([&] { kind_of(1).hull = 1; })); // another build
+    EXPECT_TRUE(refuses([&] { kind_of(0).hull = 1; })); // a plane has none
+    EXPECT_TRUE(refuses([&] { kind_of(1).shape = 2; }));
+    EXPECT_TRUE(refuses([&] { kind_of(1).size[0] = 1; }));
     EXPECT_TRUE(refuses([&] { manifolds()[0].axis = 129; }));
     // What is in range but names no face is taken, and stepped.
     EXPECT_FALSE(refuses([&] {

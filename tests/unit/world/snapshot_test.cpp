@@ -164,7 +164,8 @@ BodyMotion& body(World& world) {
 }
 
 BodyProperties& properties(World& world) {
-    return rows<BodyProperties>(world, section::kBodyProperties)[20];
+    const std::uint32_t kind = rows<BodyLife>(world, section::kBodyLife)[20].body_kind;
+    return rows<BodyProperties>(world, section::kBodyKind)[kind];
 }
 
 Manifold& manifold(World& world) {
@@ -212,10 +213,27 @@ TEST(Snapshot, RefusesDamagedBodies) {
         {"friction", [](World& w) { properties(w).friction = 0x7fffffff; }},
         {"restitution", [](World& w) { properties(w).restitution = 0x7fffffff; }},
         {"padding", [](World& w) { properties(w).zero = 1; }},
-        {"spawn count", [](World& w) { properties(w).spawn_count = 0x80000000U; }},
+        {"spawn count",
+         [](World& w) { rows<BodyLife>(w, section::kBodyLife)[20].spawn_count = 0x80000000U; }},
+        {"kind beyond the kinds",
+         [](World& w) {
+             rows<BodyLife>(w, section::kBodyLife)[20].body_kind = w.row_count(section::kBodyKind);
+         }},
+        {"a kind that nobody has",
+         [](World& w) {
+             for (BodyRow row = 0; row < w.body_count(); ++row) {
+                 rows<BodyLife>(w, section::kBodyLife)[row].body_kind = 1;
+             }
+         }},
+        {"a kind twice",
+         [](World& w) {
+             BodyProperties* kinds = rows<BodyProperties>(w, section::kBodyKind);
+             kinds[1] = kinds[2];
+         }},
+        {"no kind at all", [](World& w) { properties(w) = BodyProperties{}; }},
         {"spawn count below a living ball's",
          [](World& w) {
-             BodyProperties* pods = rows<BodyProperties>(w, section::kBodyProperties);
+             BodyLife* pods = rows<BodyLife>(w, section::kBodyLife);
              for (std::uint32_t row = 0; row < w.row_count(section::kBody); ++row) {
                  pods[row].spawn_count = 0;
              }

@@ -5,6 +5,7 @@
 #include "lockwind/rng.h"
 
 #include <algorithm>
+#include <cstring>
 #include <gtest/gtest.h>
 #include <map>
 #include <vector>
@@ -12,11 +13,16 @@
 namespace lockwind::test {
 namespace {
 
-constexpr std::array<std::uint32_t, section::kCount> kCapacities{1, 1, 32, 32, 32, 200, 8, 4, 200};
+constexpr BodyId kKinds = 7; // of records
+
+constexpr std::array<std::uint32_t, section::kCount> kCapacities{
+    1, 1, 32, 32, 32, 32, 200, 8, 4, 32, 200};
 
 struct Tables {
     StateArena arena{kWorldSections, kCapacities};
     DynamicsTables dynamics{arena.table<BodyMotion>(section::kBody),
+                            arena.table<BodyProperties>(section::kBodyKind),
+                            arena.table<BodyLife>(section::kBodyLife),
                             arena.table<BodyProperties>(section::kBodyProperties),
                             arena.table<BodySleep>(section::kBodySleep),
                             arena.table<Pair>(section::kPair),
@@ -26,10 +32,25 @@ struct Tables {
     void add(BodyId id) {
         const std::uint32_t row = dynamics.motion.count();
         dynamics.motion.set_count(row + 1);
+        dynamics.lives.set_count(row + 1);
         dynamics.properties.set_count(row + 1);
         dynamics.sleep.set_count(row + 1);
         dynamics.motion[row].id = id;
-        dynamics.properties[row].spawn_count = static_cast<std::uint32_t>(id);
+        dynamics.properties[row].friction = static_cast<std::int32_t>(1 + id % kKinds);
+        dynamics.lives[row] = {
+            kind_of(dynamics.properties[row]), static_cast<std::uint32_t>(id), 0};
+    }
+    std::uint32_t kind_of(const BodyProperties& properties) {
+        std::uint32_t kind = 0;
+        while (kind < dynamics.kinds.count() &&
+               dynamics.kinds[kind].friction != properties.friction) {
+            ++kind;
+        }
+        if (kind == dynamics.kinds.count()) {
+            dynamics.kinds.set_count(kind + 1);
+            dynamics.kinds[kind] = properties;
+        }
+        return kind;
     }
     void pair(BodyRow a, BodyRow b) {
         const std::uint32_t row = dynamics.pairs.count();
@@ -41,7 +62,8 @@ struct Tables {
 BodyRecord record(BodyId id) {
     BodyRecord body{};
     body.motion.id = id;
-    body.properties.spawn_count = static_cast<std::uint32_t>(id);
+    body.properties.friction = static_cast<std::int32_t>(1 + id % kKinds);
+    body.life.spawn_count = static_cast<std::uint32_t>(id);
     return body;
 }
 
@@ -104,9 +126,19 @@ TEST(Spawner, MergesLikeASortedMap) {
         BodyRow row = 0;
         for (const auto& [id, lives] : model) {
             EXPECT_EQ(tables.dynamics.motion[row].id, id) << "seed " << seed;
-            EXPECT_EQ(tables.dynamics.properties[row].spawn_count, id) << "seed " << seed;
+            const BodyLife& life = tables.dynamics.lives[row];
+            const BodyProperties& properties = tables.dynamics.properties[row];
+            EXPECT_EQ(life.spawn_count, id) << "seed " << seed;
+            EXPECT_EQ(properties.friction, static_cast<std::int32_t>(1 + id % kKinds));
+            ASSERT_LT(life.body_kind, tables.dynamics.kinds.count());
+            const BodyProperties& kind = tables.dynamics.kinds[life.body_kind];
+            EXPECT_EQ(std::memcmp(&kind, &properties, sizeof kind), 0);
             ++row;
         }
+        // As many as there are different bodies, in the lowest rows.
+        BodyKinds fresh(32);
+        EXPECT_TRUE(fresh.read(tables.dynamics.kinds, tables.dynamics.lives));
+        EXPECT_LE(tables.dynamics.kinds.count(), kKinds);
         EXPECT_TRUE(spawner.created().empty());
     }
 }

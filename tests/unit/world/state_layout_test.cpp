@@ -23,11 +23,13 @@ TEST(StateLayout, SectionsAreThoseThatTheirNumbersName) {
         {section::kArena, "arena"},
         {section::kGlobals, "globals"},
         {section::kBody, "body"},
-        {section::kBodyProperties, "body_properties"},
+        {section::kBodyKind, "body_kind"},
+        {section::kBodyLife, "body_life"},
         {section::kBodySleep, "body_sleep"},
         {section::kManifold, "manifold"},
         {section::kJoint, "joint"},
         {section::kPlayer, "player"},
+        {section::kBodyProperties, "body_properties"},
         {section::kPair, "pair"},
     };
     ASSERT_EQ(World::schema().size(), std::size(names));

@@ -96,7 +96,7 @@ TEST(WorldSimulation, CorruptsWhatBenchmarksOfForensicsNeed) {
                               "body.angular_velocity[2]",
                               "player.score",
                               "globals.seed",
-                              "body_properties.friction",
+                              "body_kind.friction",
                               "manifold.normal_impulse"}) {
         const auto simulation = make_simulation();
         advance(*simulation, 60);
