@@ -58,7 +58,7 @@ FOLDERS = {
 
 # sim-core/include/lockwind is one folder for all layers of the core.
 PUBLIC = {
-    "base": "assert event hash_tree phase_observer result schema slot_input types",
+    "base": "assert event hash_tree kept_state phase_observer result schema slot_input types",
     "math": "eigen fixed int128 integer overflow rng trig vector wide",
     "geometry": "shape",
     "dynamics": "simd world_definition",

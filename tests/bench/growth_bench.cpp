@@ -1,11 +1,14 @@
 #include "bench_scene.h"
 #include "measured_world.h"
+#include "step_times.h"
 
+#include <array>
 #include <benchmark/benchmark.h>
 #include <cstdint>
 #include <string>
 
-// How the time of a step grows with bodies that do not touch, and what sleeping ones cost.
+// How the time of a step grows with bodies that do not touch, and what sleeping ones cost: to step,
+// and to keep and hash.
 namespace lockwind::bench {
 namespace {
 
@@ -70,6 +73,35 @@ void step_scene(benchmark::State& state, const WorldDefinition& scene) {
     state.counters["awake"] = world.simulation().world().counts().awake;
 }
 
+/// What a step leaves to keep and to hash, in a ring as a rollback has one.
+void keep_and_hash(benchmark::State& state, const WorldDefinition& scene) {
+    MeasuredWorld world(scene);
+    world.run(kWarmUpSteps);
+    std::array<KeptState, 9> ring;
+    std::size_t next = 0;
+    for (auto iteration : state) {
+        static_cast<void>(iteration);
+        world.step();
+        StepTimes times(1);
+        times.measure([&] {
+            world.simulation().keep(ring[next]);
+            benchmark::DoNotOptimize(world.simulation().state_hash());
+        });
+        next = (next + 1) % ring.size();
+        state.SetIterationTime(times.mean_seconds());
+    }
+    state.counters["awake"] = world.simulation().world().counts().awake;
+}
+
+/// 1,000 boxes on the ground; the first of them sleep.
+WorldDefinition partly_asleep_scene(std::uint32_t asleep) {
+    WorldDefinition scene = resting_scene(1000, true);
+    for (std::size_t box = 1 + std::size_t{asleep}; box < scene.bodies.size(); ++box) {
+        scene.bodies[box].can_sleep = false;
+    }
+    return scene;
+}
+
 void register_growth(const std::string& name, WorldDefinition (*make)(std::uint32_t), int count) {
     const std::string full = "growth/" + name + "_" + std::to_string(count);
     benchmark::RegisterBenchmark(full.c_str(), [make, count](benchmark::State& state) {
@@ -80,6 +112,15 @@ void register_growth(const std::string& name, WorldDefinition (*make)(std::uint3
 } // namespace
 
 void register_growth_benchmarks() {
+    for (const std::uint32_t asleep : {0U, 900U}) {
+        const std::string name = "keep_and_hash/asleep_" + std::to_string(asleep) + "_of_1000";
+        benchmark::RegisterBenchmark(name.c_str(),
+                                     [asleep](benchmark::State& state) {
+                                         keep_and_hash(state, partly_asleep_scene(asleep));
+                                     })
+            ->UseManualTime()
+            ->Unit(benchmark::kMicrosecond);
+    }
     for (const int count : {1'000, 10'000, 50'000}) {
         register_growth("separate", &separate_scene, count);
         register_growth(

@@ -27,9 +27,9 @@ public:
         StepTimes times(1);
         times.measure([this] {
             world_.simulation().restore(first_);
-            for (Snapshot& snapshot : anew_) {
+            for (KeptState& kept : anew_) {
                 world_.step();
-                world_.simulation().keep(snapshot);
+                world_.simulation().keep(kept);
                 benchmark::DoNotOptimize(world_.simulation().state_hash());
             }
         });
@@ -49,12 +49,10 @@ public:
     }
 
 private:
-    using Snapshot = std::vector<std::byte>;
-
     MeasuredWorld& world_;
-    Snapshot before_; // a tick before first_
-    Snapshot first_;  // where a rollback goes back to
-    std::array<Snapshot, kTicksAnew> anew_;
+    KeptState before_; // a tick before first_
+    KeptState first_;  // where a rollback goes back to
+    std::array<KeptState, kTicksAnew> anew_;
 };
 
 void roll_back(benchmark::State& state, const BenchScene& scene) {

@@ -41,7 +41,7 @@ void step(World& world, int ticks) {
 int main() {
     const WorldPtr world = make_pool();
     step(*world, 30);
-    std::vector<std::byte> kept;
+    KeptState kept;
     world->keep(kept);
 
     strike(*world, 1); // a guess
@@ -58,7 +58,7 @@ int main() {
     strike(*other, 3);
     step(*other, 8);
     std::printf("kept %zu bytes; guessed %016llx, corrected %016llx, other machine %016llx\n",
-                kept.size(),
+                kept.bytes.size(),
                 static_cast<unsigned long long>(guessed),
                 static_cast<unsigned long long>(corrected),
                 static_cast<unsigned long long>(other->state_hash()));

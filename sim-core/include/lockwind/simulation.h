@@ -2,6 +2,7 @@
 
 #include "lockwind/assert.h"
 #include "lockwind/hash_tree.h"
+#include "lockwind/kept_state.h"
 #include "lockwind/phase_observer.h"
 #include "lockwind/result.h"
 #include "lockwind/schema.h"
@@ -41,11 +42,11 @@ public:
     virtual Status load(std::span<const std::byte> bytes) = 0;
 
     /// The state for this very simulation to go back to, so that rolling back costs a copy: with
-    /// what it derives from the state, in whatever form. Replaces `out`.
-    virtual void keep(std::vector<std::byte>& out) const { save(out); }
-    /// Goes back to what keep() gave. Any other bytes are the caller's mistake.
-    virtual void restore(std::span<const std::byte> kept) {
-        const Status loaded = load(kept);
+    /// what it derives from the state, in whatever form. `kept` may hold an earlier one.
+    virtual void keep(KeptState& kept) const { save(kept.bytes); }
+    /// Goes back to what keep() gave. Any other is the caller's mistake.
+    virtual void restore(const KeptState& kept) {
+        const Status loaded = load(kept.bytes);
         LOCKWIND_ASSERT(loaded.ok());
     }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lockwind/event.h"
+#include "lockwind/kept_state.h"
 #include "lockwind/query.h"
 #include "lockwind/result.h"
 #include "lockwind/schema.h"
@@ -166,8 +167,8 @@ public:
     HashTree hash_tree() const;
     void save(std::vector<std::byte>& out) const;
     Status load(std::span<const std::byte> bytes);
-    void keep(std::vector<std::byte>& out) const;
-    void restore(std::span<const std::byte> kept);
+    void keep(KeptState& kept) const;
+    void restore(const KeptState& kept);
     static StateSchema schema();
     std::uint32_t row_count(std::uint32_t section) const;
 

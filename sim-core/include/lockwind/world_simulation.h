@@ -30,8 +30,8 @@ public:
     HashTree hash_tree() const override;
     void save(std::vector<std::byte>& out) const override;
     Status load(std::span<const std::byte> bytes) override;
-    void keep(std::vector<std::byte>& out) const override;
-    void restore(std::span<const std::byte> kept) override;
+    void keep(KeptState& kept) const override;
+    void restore(const KeptState& kept) override;
     StateSchema schema() const override;
     std::span<const std::string_view> phases() const override;
     void observe(PhaseObserver* observer) override;

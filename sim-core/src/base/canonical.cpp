@@ -106,45 +106,6 @@ void save_canonical(const StateArena& arena, std::vector<std::byte>& out) {
     }
 }
 
-void save_kept(const StateArena& arena, std::vector<std::byte>& out) {
-    std::size_t size = arena.section_count() * sizeof(std::uint32_t);
-    for (std::uint32_t section = 1; section < arena.section_count(); ++section) {
-        size += arena.live_bytes(section).size();
-    }
-    out.resize(size);
-    std::byte* next = out.data();
-    // Section 0 is the counts itself.
-    for (std::uint32_t section = 0; section < arena.section_count(); ++section) {
-        const std::uint32_t count = arena.row_count(section);
-        std::memcpy(next, &count, sizeof(count));
-        next += sizeof(count);
-    }
-    for (std::uint32_t section = 1; section < arena.section_count(); ++section) {
-        const std::span<const std::byte> rows = arena.live_bytes(section);
-        if (!rows.empty()) {
-            std::memcpy(next, rows.data(), rows.size());
-            next += rows.size();
-        }
-    }
-}
-
-void load_kept(StateArena& arena, std::span<const std::byte> bytes) {
-    std::size_t offset = arena.section_count() * sizeof(std::uint32_t);
-    LOCKWIND_ASSERT(bytes.size() >= offset);
-    for (std::uint32_t section = 1; section < arena.section_count(); ++section) {
-        std::uint32_t count = 0;
-        std::memcpy(&count, bytes.data() + section * sizeof(count), sizeof(count));
-        arena.set_row_count(section, count);
-        const std::span<std::byte> rows = arena.live_bytes(section);
-        LOCKWIND_ASSERT(bytes.size() - offset >= rows.size());
-        if (!rows.empty()) {
-            std::memcpy(rows.data(), bytes.data() + offset, rows.size());
-            offset += rows.size();
-        }
-    }
-    LOCKWIND_ASSERT(offset == bytes.size());
-}
-
 Result<std::vector<std::span<const std::byte>>> split_canonical(StateSchema schema,
                                                                 std::span<const std::byte> bytes) {
     if (Status status = check_size(schema, bytes); !status) {

@@ -32,12 +32,6 @@ void save_canonical(const StateArena& arena, std::vector<std::byte>& out);
 Result<std::vector<std::span<const std::byte>>> split_canonical(StateSchema schema,
                                                                 std::span<const std::byte> bytes);
 
-/// All live rows, derived ones too, in this machine's order: for this process to go back to.
-/// Replaces `out`, as save_canonical does.
-void save_kept(const StateArena& arena, std::vector<std::byte>& out);
-/// Asserts that `bytes` are what save_kept gave of an arena of the same schema and capacities.
-void load_kept(StateArena& arena, std::span<const std::byte> bytes);
-
 /// Fills `arena` with what save_canonical gave. Refuses sizes and counts that do not fit; the rows'
 /// content is not checked. On an Error the arena may hold anything. No allocation but for an Error.
 Status load_canonical(StateArena& arena, std::span<const std::byte> bytes);

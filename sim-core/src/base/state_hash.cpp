@@ -2,6 +2,7 @@
 
 #include "base/canonical.h"
 
+
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -42,6 +43,11 @@ StateHasher::StateHasher(const StateArena& arena) {
     }
     pages_.reserve(largest_bytes / kHashPageBytes + 1);
     sections_.reserve(arena.section_count());
+    known_.resize(arena.state_section_count());
+    for (std::uint32_t section = 0; section < arena.state_section_count(); ++section) {
+        const std::size_t stride = arena.schema()[section].stride_bytes;
+        known_[section].pages.reserve(stride * arena.capacity(section) / kHashPageBytes + 1);
+    }
     if constexpr (std::endian::native == std::endian::big) {
         swapped_.reserve(largest_bytes);
     }
@@ -67,6 +73,37 @@ std::uint64_t StateHasher::root(const StateArena& arena) {
     for (std::uint32_t section = 0; section < arena.state_section_count(); ++section) {
         sections_.push_back(canonical_word(hash_section(arena, section)));
     }
+    return hash_words(sections_);
+}
+
+std::uint64_t StateHasher::hash_known(const StateArena& arena,
+                                      std::uint32_t section,
+                                      const PageVersions& versions) {
+    const std::span<const std::byte> rows = arena.live_bytes(section);
+    Known& known = known_[section];
+    known.pages.resize((rows.size() + kHashPageBytes - 1) / kHashPageBytes);
+    for (std::size_t page = 0; page < known.pages.size(); ++page) {
+        const std::size_t offset = page * kHashPageBytes;
+        const std::size_t end = std::min(offset + kHashPageBytes, rows.size());
+        const bool same_size =
+            end <= known.size_bytes && (end - offset == kHashPageBytes || end == known.size_bytes);
+        if (!same_size || versions.of(section, page) > known_version_) {
+            known.pages[page] = hash_bytes(rows.subspan(offset, end - offset));
+        }
+    }
+    known.size_bytes = rows.size();
+    return hash_words(known.pages);
+}
+
+std::uint64_t StateHasher::root(const StateArena& arena, PageVersions& versions) {
+    if constexpr (std::endian::native == std::endian::big) {
+        return root(arena); // a section's rows are swapped as a whole
+    }
+    sections_.clear();
+    for (std::uint32_t section = 0; section < arena.state_section_count(); ++section) {
+        sections_.push_back(hash_known(arena, section, versions));
+    }
+    known_version_ = versions.look();
     return hash_words(sections_);
 }
 

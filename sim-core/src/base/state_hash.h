@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/arena.h"
+#include "base/page_versions.h"
 
 #include "lockwind/hash_tree.h"
 #include "lockwind/schema.h"
@@ -26,15 +27,27 @@ public:
     explicit StateHasher(const StateArena& arena);
 
     std::uint64_t root(const StateArena& arena);
+    /// The same of always the same arena, hashing only pages that have changed since the last call.
+    std::uint64_t root(const StateArena& arena, PageVersions& versions);
     HashTree tree(const StateArena& arena);
 
 private:
     /// Leaves the section's page hashes, as canonical words, in pages_.
     std::uint64_t hash_section(const StateArena& arena, std::uint32_t section);
 
+    /// A section as root() with versions last saw it.
+    struct Known {
+        std::size_t size_bytes = 0;
+        std::vector<std::uint64_t> pages;
+    };
+    std::uint64_t
+    hash_known(const StateArena& arena, std::uint32_t section, const PageVersions& versions);
+
     std::vector<std::uint64_t> pages_;    // of one section
     std::vector<std::uint64_t> sections_; // of all `state` sections
     std::vector<std::byte> swapped_;      // canonical rows of one section; big-endian machines only
+    std::vector<Known> known_;
+    std::uint64_t known_version_ = 0; // 0: nothing is known
 };
 
 } // namespace lockwind

@@ -25,6 +25,9 @@ public:
                   ManifoldSlots& slots,
                   std::vector<ContactChange>& changes);
 
+    /// Whether the last run renewed any bounds, and so may have changed pairs.
+    bool has_moved() const { return !moved_.empty(); }
+
     /// Makes the pair table anew from the stored bounds; nothing touches in it. False where it
     /// cannot hold them: it is then empty.
     bool derive_pairs(const DynamicsTables& tables);

@@ -73,6 +73,7 @@ struct Dynamics::Impl {
     Solver solver;
     Sleep sleep;
     std::vector<ContactChange> changes;
+    bool pairs_moved = false;
 };
 
 Dynamics::Dynamics(const DynamicsSettings& settings, const ShapeLibrary* shapes, Simd simd)
@@ -83,6 +84,8 @@ Dynamics::~Dynamics() = default;
 StepFault Dynamics::broad_phase(const DynamicsTables& tables) {
     impl_->changes.clear();
     impl_->sleep.clear_changes();
+    impl_->slots.forget_freed();
+    impl_->pairs_moved = false;
     impl_->activity.read_rows(tables.sleep);
     const std::span<const BodyRow> awake = impl_->activity.rows();
     if (awake.empty()) {
@@ -90,7 +93,10 @@ StepFault Dynamics::broad_phase(const DynamicsTables& tables) {
     }
     impl_->frames.refresh(tables, awake);
     impl_->slots.read(tables.manifolds);
-    return impl_->broad.run(tables, impl_->frames, awake, impl_->slots, impl_->changes);
+    const StepFault fault =
+        impl_->broad.run(tables, impl_->frames, awake, impl_->slots, impl_->changes);
+    impl_->pairs_moved = impl_->broad.has_moved();
+    return fault;
 }
 
 StepFault Dynamics::narrow_phase(const DynamicsTables& tables) {
@@ -144,6 +150,22 @@ std::span<const SleepChange> Dynamics::sleep_changes() const {
 
 std::span<const BodyRow> Dynamics::awake_rows() const {
     return impl_->activity.rows();
+}
+
+std::span<const std::uint32_t> Dynamics::active_pairs() const {
+    return impl_->activity.pairs();
+}
+
+std::span<const std::uint32_t> Dynamics::active_joints() const {
+    return impl_->activity.joints();
+}
+
+std::span<const std::uint32_t> Dynamics::freed_manifolds() const {
+    return impl_->slots.freed();
+}
+
+bool Dynamics::pairs_moved() const {
+    return impl_->pairs_moved;
 }
 
 std::span<const std::uint32_t> Dynamics::broken_joints() const {

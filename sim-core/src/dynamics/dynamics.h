@@ -107,6 +107,13 @@ public:
     std::span<const SleepChange> sleep_changes() const;
     /// Rows that the last solve moved, or would have, in row order.
     std::span<const BodyRow> awake_rows() const;
+    /// Rows of the pairs and joints that concern them.
+    std::span<const std::uint32_t> active_pairs() const;
+    std::span<const std::uint32_t> active_joints() const;
+    /// Rows of manifolds that were freed since the last broad phase began.
+    std::span<const std::uint32_t> freed_manifolds() const;
+    /// Whether the last broad phase changed the pairs.
+    bool pairs_moved() const;
 
     /// Makes the derived pairs anew from fat bounds and manifolds. False where there are too many
     /// for the table, or a manifold belongs to none of them or to one that has another.

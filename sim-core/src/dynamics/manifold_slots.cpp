@@ -8,7 +8,9 @@
 namespace lockwind {
 
 ManifoldSlots::ManifoldSlots(std::uint32_t capacity)
-    : capacity_(capacity), taken_(capacity / 64 + 1) {}
+    : capacity_(capacity), taken_(capacity / 64 + 1) {
+    freed_.reserve(2 * std::size_t{capacity}); // by two phases
+}
 
 void ManifoldSlots::read(const Table<Manifold>& manifolds) {
     std::fill(taken_.begin(), taken_.end(), 0U);
@@ -42,6 +44,7 @@ std::uint32_t ManifoldSlots::take(const Table<Manifold>& manifolds) {
 
 void ManifoldSlots::free(const Table<Manifold>& manifolds, std::uint32_t slot) {
     manifolds[slot] = Manifold{};
+    freed_.push_back(slot);
     taken_[slot / 64] &= ~(std::uint64_t{1} << (slot % 64));
     first_word_ = std::min(first_word_, static_cast<std::size_t>(slot / 64));
 }

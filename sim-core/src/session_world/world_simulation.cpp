@@ -128,7 +128,8 @@ Tick WorldSimulation::tick() const {
 }
 
 Status WorldSimulation::advance(std::span<const SlotInput> inputs) {
-    return impl_->world->step(inputs, impl_.get());
+    const bool is_watched = impl_->observer != nullptr || impl_->fault_phase != kNoIndex;
+    return impl_->world->step(inputs, is_watched ? impl_.get() : nullptr);
 }
 
 std::uint64_t WorldSimulation::state_hash() const {
@@ -147,11 +148,11 @@ Status WorldSimulation::load(std::span<const std::byte> bytes) {
     return impl_->world->load(bytes);
 }
 
-void WorldSimulation::keep(std::vector<std::byte>& out) const {
-    impl_->world->keep(out);
+void WorldSimulation::keep(KeptState& kept) const {
+    impl_->world->keep(kept);
 }
 
-void WorldSimulation::restore(std::span<const std::byte> kept) {
+void WorldSimulation::restore(const KeptState& kept) {
     impl_->world->restore(kept);
 }
 

@@ -64,6 +64,8 @@ public:
         return kinds_.read(tables.kinds, tables.lives);
     }
 
+    /// Whether apply() will change the tables.
+    bool is_due() const { return !created_.empty() || destroyed_count_ != 0; }
     /// Makes tables of the bodies that stay and the new ones, in id order, and renumbers pairs and
     /// manifolds. Empties the queues. bodies_full leaves the tables as they were.
     StepFault apply(const DynamicsTables& tables);

@@ -103,8 +103,8 @@ World::Impl::Impl(const WorldDefinition& definition,
                   PodSystem pod_system)
     : settings(definition.settings), capacities(dynamics_capacities), shapes(std::move(library)),
       arena(kWorldSections, capacities_of(capacities, definition.pods.size())),
-      staging(kWorldSections, capacities_of(capacities, definition.pods.size())), hasher(arena),
-      dynamics(capacities, &shapes, simd), pods(std::move(pod_system)),
+      staging(kWorldSections, capacities_of(capacities, definition.pods.size())), versions(arena),
+      hasher(arena), dynamics(capacities, &shapes, simd), pods(std::move(pod_system)),
       spawner(capacities.body_capacity, creations_max(definition.pods.size())),
       events(events_max(capacities)), query_index(capacities.body_capacity) {}
 

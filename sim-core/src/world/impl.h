@@ -1,6 +1,8 @@
 #pragma once
 
 #include "base/arena.h"
+#include "base/keeping.h"
+#include "base/page_versions.h"
 #include "base/state_hash.h"
 #include "dynamics/dynamics.h"
 #include "geometry/shape_library.h"
@@ -31,6 +33,10 @@ struct World::Impl {
     static DynamicsTables tables_of(StateArena& arena);
     Error fault_error();
     void begin_anew();
+    /// A joint came, went or is steered, which wakes its bodies.
+    void touch_joints();
+    /// Before a look at the pages of the state.
+    PageVersions& looked_at();
     /// Makes the derived sections anew.
     void derive(const DynamicsTables& rows);
     /// Whether a state can be stepped; see validate.h.
@@ -48,6 +54,9 @@ struct World::Impl {
     StateArena staging;
 
     // Scratch and derived data: nothing that the next tick reads.
+    Keeper keeper;
+    PageVersions versions;
+    bool is_tracked = true; // false: who changes the state's bytes does not tell
     StateHasher hasher;
     Dynamics dynamics;
     PodSystem pods;

@@ -27,6 +27,12 @@ Joint* find_joint(const Table<Joint>& joints, JointId id) {
 
 } // namespace
 
+void World::Impl::touch_joints() {
+    for (const std::uint32_t section : {section::kArena, section::kJoint, section::kBodySleep}) {
+        versions.touch(section);
+    }
+}
+
 Status World::create_joint(const JointDefinition& definition) {
     const DynamicsTables tables = impl_->tables();
     const std::string subject = "joint " + std::to_string(definition.id) + ": ";
@@ -53,6 +59,7 @@ Status World::create_joint(const JointDefinition& definition) {
         tables.joints[row] = tables.joints[row - 1];
     }
     tables.joints[row] = joint;
+    impl_->touch_joints();
     wake_joined(tables, joint);
     return Success{};
 }
@@ -64,6 +71,7 @@ bool World::destroy_joint(JointId id) {
     if (joint == nullptr) {
         return false;
     }
+    impl_->touch_joints();
     wake_joined(tables, *joint);
     for (std::uint32_t row = place_of(joints, id); row + 1 < joints.count(); ++row) {
         joints[row] = joints[row + 1];
@@ -98,6 +106,7 @@ bool World::set_joint_target(JointId id, const Vec3& target) {
         joint->target[axis] =
             std::clamp(components[axis], -kBodyPositionMax, kBodyPositionMax).raw();
     }
+    impl_->touch_joints();
     wake_joined(impl_->tables(), *joint);
     return true;
 }
@@ -109,6 +118,7 @@ bool World::set_joint_motor(JointId id, Real speed) {
     }
     joint->motor_speed =
         convert<Velocity>(std::clamp(speed, -kJointMotorSpeedMax, kJointMotorSpeedMax)).raw();
+    impl_->touch_joints();
     wake_joined(impl_->tables(), *joint);
     return true;
 }

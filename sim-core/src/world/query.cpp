@@ -139,6 +139,8 @@ bool World::apply_impulse(BodyId id, const Vec3& impulse, const Vec3& point) {
                        spin_change(cross(arm, change), motion, properties),
                    motion.angular_velocity);
     wake_body(tables, row);
+    impl_->versions.touch(section::kBody, row);
+    impl_->versions.touch(section::kBodySleep, row);
     return true;
 }
 
@@ -163,6 +165,8 @@ bool World::apply_torque(BodyId id, const Vec3& torque) {
                        spin_change(by_mass, motion, properties),
                    motion.angular_velocity);
     wake_body(tables, row);
+    impl_->versions.touch(section::kBody, row);
+    impl_->versions.touch(section::kBodySleep, row);
     return true;
 }
 
@@ -183,6 +187,7 @@ Status World::create_body(const BodyDefinition& definition) {
                      ": position lies outside of settings.bounds"};
     }
     impl_->query_index.drop();
+    impl_->versions.touch_all();
     impl_->spawner.create(body);
     if (impl_->spawner.apply(tables) != StepFault::none) {
         return Error{"body " + std::to_string(definition.id) + ": settings.body_capacity of " +
@@ -198,6 +203,7 @@ bool World::destroy_body(BodyId id) {
         return false;
     }
     impl_->query_index.drop();
+    impl_->versions.touch_all();
     impl_->spawner.destroy(row);
     impl_->spawner.apply(tables);
     return true;

@@ -57,6 +57,7 @@ Status World::redefine_body(const BodyDefinition& definition) {
         return Error{subject + "joint " + std::to_string(joint->id) +
                      " cannot hold it then: " + "one of its bodies must be dynamic"};
     }
+    impl_->versions.touch_all();
     impl_->spawner.redefine(tables, row, made.properties);
     impl_->query_index.drop();
     drop_contacts(tables, row);

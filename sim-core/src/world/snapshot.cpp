@@ -2,7 +2,9 @@
 #include "world/impl.h"
 #include "world/validate.h"
 
+#include "lockwind/assert.h"
 #include "lockwind/hash_tree.h"
+#include "lockwind/overflow.h"
 
 #include <utility>
 
@@ -33,7 +35,11 @@ Status World::Impl::validate(StateArena& state, const DynamicsTables* known) {
 }
 
 std::uint64_t World::state_hash() const {
-    return impl_->hasher.root(impl_->arena);
+    const std::uint64_t hash = impl_->hasher.root(impl_->arena, impl_->looked_at());
+    if constexpr (kChecked) {
+        LOCKWIND_ASSERT(hash == impl_->hasher.root(impl_->arena)); // every write was told
+    }
+    return hash;
 }
 
 HashTree World::hash_tree() const {
@@ -53,16 +59,17 @@ Status World::load(std::span<const std::byte> bytes) {
         return valid;
     }
     std::swap(impl_->arena, impl_->staging);
+    impl_->versions.touch_all();
     impl_->begin_anew();
     return Success{};
 }
 
-void World::keep(std::vector<std::byte>& out) const {
-    save_kept(impl_->arena, out);
+void World::keep(KeptState& kept) const {
+    impl_->keeper.keep(impl_->arena, impl_->looked_at(), kept);
 }
 
-void World::restore(std::span<const std::byte> kept) {
-    load_kept(impl_->arena, kept);
+void World::restore(const KeptState& kept) {
+    impl_->keeper.restore(impl_->arena, impl_->looked_at(), kept);
     impl_->begin_anew();
 }
 
@@ -85,12 +92,20 @@ std::uint32_t World::row_count(std::uint32_t section) const {
 
 std::span<std::byte> World::section_bytes(std::uint32_t section) {
     LOCKWIND_ASSERT(section < section::kCount);
-    impl_->query_index.drop(); // they may be about to be written
+    impl_->query_index.drop(); // they may be written, now or later
+    impl_->is_tracked = false;
     return impl_->arena.live_bytes(section);
 }
 
 Status World::check() const {
     return impl_->validate(impl_->arena, nullptr);
+}
+
+PageVersions& World::Impl::looked_at() {
+    if (!is_tracked) {
+        versions.touch_all();
+    }
+    return versions;
 }
 
 void World::Impl::derive(const DynamicsTables& rows) {

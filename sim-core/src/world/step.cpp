@@ -35,6 +35,7 @@ private:
     EventType event_of(const ContactChange& change) const;
     BodyId id(BodyRow row) const { return tables_.motion[row].id; }
     std::uint32_t tick_low() const { return static_cast<std::uint32_t>(tick_); }
+    void note_changes();
     void report_contacts();
     void score_hits();
     void destroy(BodyRow row);
@@ -99,13 +100,18 @@ Status World::step(std::span<const SlotInput> inputs, PhaseObserver* observer) {
     world.events.clear();
     world.query_index.drop();
     Step step(world, inputs);
+    if (observer != nullptr) {
+        world.versions.touch_all(); // it looks at every phase
+    }
     for (std::uint32_t phase = 0; phase < kPhases.size(); ++phase) {
         world.fault = (step.*kPhases[phase].run)();
         if (world.fault != StepFault::none) {
+            world.versions.touch_all();
             return world.fault_error();
         }
         if (observer != nullptr) {
             observer->after_phase(phase);
+            world.versions.touch_all();
         }
     }
     return Success{};
@@ -150,6 +156,7 @@ StepFault Step::sleep() {
 
 /// Contacts and hits are told by row, so they are turned into events before rows move.
 StepFault Step::spawns_despawns() {
+    note_changes();
     report_contacts();
     break_joints();
     score_hits();
@@ -164,7 +171,54 @@ StepFault Step::spawns_despawns() {
         world_.events.add(EventType::created, ball.motion.id, spawner_of(ball.motion.id), 0);
         ++world_.globals().created_total;
     }
+    if (spawner.is_due()) {
+        world_.versions.touch_all();
+    }
     return spawner.apply(tables_);
+}
+
+/// Who is awake, what concerns them, and what all steps change. Later phases change no more, but
+/// where bodies come and go.
+void Step::note_changes() {
+    PageVersions& versions = world_.versions;
+    for (const std::uint32_t section :
+         {section::kArena, section::kGlobals, section::kBodySleep, section::kPlayer}) {
+        versions.touch(section);
+    }
+    const Dynamics& dynamics = world_.dynamics;
+    if (dynamics.awake_rows().size() > tables_.motion.count() / 2) {
+        for (const std::uint32_t section :
+             {section::kBody, section::kManifold, section::kJoint, section::kPair}) {
+            versions.touch(section);
+        }
+        return;
+    }
+    for (const BodyRow row : dynamics.awake_rows()) {
+        versions.touch(section::kBody, row);
+    }
+    for (const Player& player : world_.players().rows()) {
+        if (const BodyRow row = row_of(tables_.motion, player.body); row != kNoIndex) {
+            versions.touch(section::kBody, row);
+        }
+    }
+    for (const std::uint32_t index : dynamics.active_pairs()) {
+        versions.touch(section::kPair, index);
+        if (tables_.pairs[index].point_count != 0) {
+            versions.touch(section::kManifold, tables_.pairs[index].manifold);
+        }
+    }
+    for (const std::uint32_t slot : dynamics.freed_manifolds()) {
+        versions.touch(section::kManifold, slot);
+    }
+    for (const std::uint32_t row : dynamics.active_joints()) {
+        versions.touch(section::kJoint, row);
+    }
+    if (!dynamics.broken_joints().empty()) {
+        versions.touch(section::kJoint);
+    }
+    if (dynamics.pairs_moved()) {
+        versions.touch(section::kPair);
+    }
 }
 
 EventType Step::event_of(const ContactChange& change) const {

@@ -49,18 +49,6 @@ TEST(Canonical, WritesCountsThenRowsLittleEndian) {
     EXPECT_EQ(canonical_size_bytes(arena), sizeof(expected));
 }
 
-TEST(Canonical, KeptRowsComeBackWithTheDerivedOnes) {
-    StateArena target(kSampleSchema, kSampleCapacities);
-    for (std::uint64_t seed = 0; seed < 50; ++seed) {
-        const StateArena arena = random_arena(seed);
-        std::vector<std::byte> kept;
-        save_kept(arena, kept);
-        load_kept(target, kept);
-        ASSERT_TRUE(std::ranges::equal(target.buffer(), arena.buffer()));
-        ASSERT_EQ(target.row_count(3), arena.row_count(3));
-    }
-}
-
 TEST(Canonical, RoundTripsRandomStates) {
     StateArena target(kSampleSchema, kSampleCapacities);
     for (std::uint64_t seed = 0; seed < 50; ++seed) {

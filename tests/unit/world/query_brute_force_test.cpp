@@ -138,7 +138,7 @@ TEST(WorldQueries, SeeEveryChangeOfTheBodiesAtOnce) {
     EXPECT_EQ(seen(), 9U) << "created";
     std::vector<std::byte> full;
     world->save(full);
-    std::vector<std::byte> kept;
+    KeptState kept;
     world->keep(kept);
     step_idle(*world, 2);
     EXPECT_EQ(seen(), 0U) << "moved on by two metres";

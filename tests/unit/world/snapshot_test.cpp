@@ -34,7 +34,7 @@ TEST(Snapshot, RestoringItsOwnGoesOnLikeLoadingIt) {
     }
     std::vector<std::byte> bytes;
     world->save(bytes);
-    std::vector<std::byte> kept;
+    KeptState kept;
     world->keep(kept);
     ASSERT_TRUE(loaded->load(bytes).ok());
     for (int tick = 0; tick < 100; ++tick) {
@@ -59,7 +59,7 @@ TEST(Snapshot, ABallThatWasGoneGoesAgainAfterRestoring) {
     shoot.buttons = PlayerInput::kShoot;
     ASSERT_TRUE(world->step(inputs_of({shoot})).ok());
     ASSERT_EQ(world->body_count(), 3U);
-    std::vector<std::byte> kept;
+    KeptState kept;
     world->keep(kept);
     for (int run = 0; run < 2; ++run) {
         const std::uint32_t lifetime = scene.pods[0].ball_lifetime_ticks;
