@@ -10,6 +10,8 @@ namespace lockwind {
 
 /// Push-out speed of overlapping bodies is at most 3 m/s.
 inline constexpr std::int32_t kPushOutSpeedMax = 3 * kVelocityOne;
+/// A gap counts for at most 960 m/s as s / h: no body closes it in a substep.
+inline constexpr std::int32_t kSeparationMax = 960 * kVelocityOne;
 
 /// A contact's normal impulse in a substep / reduced mass is at most 960 m/s: what a closing speed
 /// of that takes, and what bears 24,000 times the mass of the lighter partner at 240 substeps a
@@ -85,7 +87,10 @@ public:
         LOCKWIND_UNROLL
         for (std::uint32_t point = 0; point < kPoints; ++point) {
             ContactBlock::Point& p = block_.point[point];
-            const Vector separation = L::add(lane(p.separation), moved[point]);
+            // Bodies that part fast: what adds up over the substeps must stay in the format, with a
+            // speed more.
+            const Vector separation =
+                L::minimum(L::add(lane(p.separation), moved[point]), L::set(kSeparationMax));
             L::store(p.separation + first_, separation);
             const Vector old = lane(p.impulse);
             const Vector v = coupled_speed(speed[point], applied, point);

@@ -467,5 +467,25 @@ TEST(MassRatio, MillionfoldIsCrushedWithinTheFormats) {
     EXPECT_LT(bench.position(2, 1), 2);
 }
 
+/// Bodies that touch and part: the gap grows by 2 m in a substep, and nothing is pushed.
+TEST(Contact, WhatFliesApartFastIsLeftAlone) {
+    for (const std::uint32_t substeps : {1U, 4U, 16U}) {
+        WorldSettings settings;
+        settings.gravity = vec(0, 0, 0);
+        settings.substeps = substeps;
+        settings.linear_speed_max = 500;
+        DynamicsBench bench(settings, 4);
+        bench.add(fixed(cube(1, vec(0, 0, 0))));
+        BodyDefinition flying = ball(0.2, vec(1.205, 0, 0));
+        flying.linear_velocity = vec(480, 3, 0);
+        const BodyRow row = bench.add(flying);
+        bench.step();
+        EXPECT_EQ(bench.state().manifold_count, 1U);
+        EXPECT_EQ(bench.velocity(row, 0), 480) << substeps;
+        EXPECT_EQ(bench.velocity(row, 1), 3) << substeps;
+        EXPECT_EQ(bench.spin(row, 2), 0) << substeps;
+    }
+}
+
 } // namespace
 } // namespace lockwind
