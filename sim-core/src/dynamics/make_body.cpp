@@ -112,6 +112,8 @@ void check_definition(const BodyDefinition& definition,
         definition.friction_rule <= CombineRule::maximum, "friction_rule", "is unknown");
     checker.require(
         definition.restitution_rule <= CombineRule::maximum, "restitution_rule", "is unknown");
+    checker.require(
+        definition.collision_mode <= CollisionMode::speculative, "collision_mode", "is unknown");
     checker.vector_range("surface_velocity", definition.surface_velocity, kSurfaceSpeedMax, " m/s");
     checker.range("density", definition.density, 0, kDensityMax, " kg/m^3");
     checker.range("mass", definition.mass, 0, kBodyMassMax, " kg");
@@ -208,8 +210,9 @@ void fill_inertia(const ShapeDefinition& shape,
         const auto k = static_cast<std::int64_t>(moment(axis));
         const std::int64_t ratio = (multiply_divide(rho * rho, kTwice, k) + 1) >> 1;
         const std::int64_t arm = arm_about(shape, hull, properties, axis) + radius / 24 + kOff;
-        bearable = bearable && is_bearable(arm, rho, k) &&
-                   ratio <= std::int64_t{InverseInertia::highest().raw()};
+        // A twist about the axis has this response.
+        constexpr std::int64_t kRatioMax = std::int64_t{8} << InverseInertia::kFraction;
+        bearable = bearable && is_bearable(arm, rho, k) && ratio < kRatioMax;
         properties.inverse_inertia[axis] = raw_saturate<std::int32_t>(ratio);
     }
     checker.require(bearable, "shape", "is too slender; it may be about 10 times as long as thick");
@@ -376,6 +379,7 @@ Status make_body(const BodyDefinition& definition,
     new_properties.surface_velocity[2] = convert<Velocity>(surface.z).raw();
     new_properties.layer = static_cast<std::uint8_t>(definition.layer);
     new_properties.mask = definition.mask & settings.layer_masks[definition.layer];
+    new_properties.collision_mode = static_cast<std::uint8_t>(definition.collision_mode);
     new_properties.friction_rule = static_cast<std::uint8_t>(definition.friction_rule);
     new_properties.restitution_rule = static_cast<std::uint8_t>(definition.restitution_rule);
     new_properties.friction = convert<Coefficient>(definition.friction).raw();

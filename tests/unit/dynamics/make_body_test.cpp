@@ -346,6 +346,11 @@ INSTANTIATE_TEST_SUITE_P(
                     d.shape.half_extents = {1, 0.02, 0.02};
                 },
                 "slender"},
+        Refusal{"TooSlenderToTwist", // (k_most / k_least)^2 = 73: above 8^2
+                [](BodyDefinition& d) {
+                    d.shape.half_extents = {0.6, 0.05, 0.05};
+                },
+                "slender"},
         Refusal{"CapsuleTooSlender",
                 [](BodyDefinition& d) {
                     d.shape.type = ShapeType::capsule;

@@ -134,7 +134,7 @@ TEST(Redefine, ErrorsChangeNothing) {
     wrong.id = 77777;
     EXPECT_NE(refusal(wrong).find("body 77777: is no body"), std::string::npos);
     wrong = hung;
-    wrong.shape.half_extents.x = 3;
+    wrong.shape.half_extents.x = 1;
     EXPECT_NE(refusal(wrong).find("body 10001: shape is another"), std::string::npos);
     wrong = hung;
     wrong.mode = BodyMode::kinematic; // its joint's other body is fixed
