@@ -46,12 +46,16 @@ std::string fields_of(const std::string& type) {
     return names;
 }
 
-/// The values of Body.mode, the only enumeration.
-std::string modes() {
-    const google::protobuf::EnumDescriptor& type = *scene_text::Body::Mode_descriptor();
+/// The values of the field, which has the same enumeration in all messages that have it.
+std::string values_of(const std::string& field) {
+    const google::protobuf::FileDescriptor& file = *scene_text::Scene::descriptor()->file();
     std::string names;
-    for (int index = 0; index < type.value_count(); ++index) {
-        names += (index == 0 ? "" : ", ") + type.value(index)->name();
+    for (int index = 0; index < file.message_type_count() && names.empty(); ++index) {
+        const auto* found = file.message_type(index)->FindFieldByName(field);
+        const auto* type = found != nullptr ? found->enum_type() : nullptr;
+        for (int value = 0; type != nullptr && value < type->value_count(); ++value) {
+            names += (value == 0 ? "" : ", ") + type->value(value)->name();
+        }
     }
     return names;
 }
@@ -77,7 +81,8 @@ public:
             const Place place = place_before({line, column}, words[0]);
             errors_.add(place.line,
                         place.column,
-                        words[1] + " cannot be \"" + words[0] + "\"; it is one of: " + modes());
+                        words[1] + " cannot be \"" + words[0] +
+                            "\"; it is one of: " + values_of(words[1]));
         } else {
             errors_.add(line, column, what);
         }
