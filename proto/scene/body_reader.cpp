@@ -181,6 +181,7 @@ BodyDefinition BodyReader::read_common(const scene_text::Body& body,
     definition.layer = layers_.read_layer(body.layer(), reader);
     definition.mask = layers_.read_mask(body.ignores(), reader);
     definition.sensor = body.sensor();
+    definition.collision_mode = static_cast<CollisionMode>(body.collision_mode());
     definition.can_sleep = !body.has_can_sleep() || body.can_sleep();
     return definition;
 }

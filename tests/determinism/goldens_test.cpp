@@ -37,6 +37,7 @@ const std::vector<GoldenRun>& golden_runs() {
         {"heap_1000", 0, {0, 30, 60}},
         {"joints", 0, {0, 60, 300}},
         {"hulls", 4, {0, 60, 300}},
+        {"bullets", 0, {0, 60, 300}},
     };
     return runs;
 }

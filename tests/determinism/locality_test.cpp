@@ -37,6 +37,7 @@ void add_group(WorldDefinition& scene, BodyId first_id, Real offset) {
         rock.shape.type = ShapeType::hull;
         scene.bodies.push_back(rock);
     }
+    add_bullets(scene, first_id + 100, {offset, 4, 8});
     add_pod(scene, first_id + 50, {offset, 0.3, -6});
 }
 

@@ -57,7 +57,10 @@ void add_group(WorldDefinition& scene, const Group& group) {
                          Real(index / 2) * Real(1.1) + Real(0.8),
                          random_symmetric(group.seed, id, 1) * Real(0.3)};
         scene.bodies.push_back(group.body(id++, 20 + index, place));
-        scene.bodies.back().restitution = group.draw(40 + index, 4) == 0 ? Real(0.6) : Real(0);
+        BodyDefinition& body = scene.bodies.back();
+        body.restitution = group.draw(40 + index, 4) == 0 ? Real(0.6) : Real(0);
+        body.collision_mode = static_cast<CollisionMode>(group.draw(70 + index, 4));
+        body.linear_velocity.z = group.draw(100 + index, 4) == 0 ? Real(70) : Real(0);
     }
     BodyDefinition paddle = box(group.first_id + 60, {x - Real(14), 0.5, 8}, {0.3, 0.3, 3});
     paddle.mode = BodyMode::kinematic;

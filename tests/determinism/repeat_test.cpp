@@ -11,10 +11,17 @@ namespace {
 
 constexpr int kTicks = 240;
 
+/// With bodies of all collision modes that fly at a wall and each other.
+WorldDefinition fast_scene() {
+    WorldDefinition scene = busy_scene(60, 4);
+    add_bullets(scene, 30000, {0, 12, 0});
+    return scene;
+}
+
 /// Hashes of state(0) .. state(kTicks) of a straight run.
 const std::vector<std::uint64_t>& straight_chain() {
     static const std::vector<std::uint64_t> states = [] {
-        const WorldPtr world = make_world(busy_scene(60, 4));
+        const WorldPtr world = make_world(fast_scene());
         std::vector<std::uint64_t> chain{world->state_hash()};
         for (int tick = 0; tick < kTicks; ++tick) {
             step_busy(*world);
@@ -26,7 +33,7 @@ const std::vector<std::uint64_t>& straight_chain() {
 }
 
 TEST(Determinism, TheStraightRunIsNotVacuous) {
-    const WorldPtr world = make_world(busy_scene(60, 4));
+    const WorldPtr world = make_world(fast_scene());
     for (int tick = 0; tick < kTicks; ++tick) {
         step_busy(*world);
     }
@@ -38,7 +45,7 @@ TEST(Determinism, TheStraightRunIsNotVacuous) {
 }
 
 TEST(Determinism, TheSameDefinitionAndInputsGiveTheSameChain) {
-    const WorldPtr world = make_world(busy_scene(60, 4));
+    const WorldPtr world = make_world(fast_scene());
     for (int tick = 0; tick < kTicks; ++tick) {
         ASSERT_EQ(world->state_hash(), straight_chain()[static_cast<std::size_t>(tick)]) << tick;
         step_busy(*world);
@@ -47,7 +54,7 @@ TEST(Determinism, TheSameDefinitionAndInputsGiveTheSameChain) {
 }
 
 TEST(Determinism, OneBitOfInputIsAnotherChain) {
-    const WorldPtr world = make_world(busy_scene(60, 4));
+    const WorldPtr world = make_world(fast_scene());
     std::vector<SlotInput> inputs = busy_inputs(1, 4);
     inputs[2].bytes[0] ^= 1;
     ASSERT_TRUE(world->step(inputs).ok());
@@ -55,7 +62,7 @@ TEST(Determinism, OneBitOfInputIsAnotherChain) {
 }
 
 TEST(Determinism, WhereAnInputCameFromDoesNotMatter) {
-    const WorldPtr world = make_world(busy_scene(60, 4));
+    const WorldPtr world = make_world(fast_scene());
     std::vector<SlotInput> inputs = busy_inputs(1, 4);
     inputs[1].status = InputStatus::substituted;
     inputs[2].status = InputStatus::predicted;
@@ -64,12 +71,12 @@ TEST(Determinism, WhereAnInputCameFromDoesNotMatter) {
 }
 
 TEST(Determinism, LoadingIntoAFreshWorldContinuesTheChain) {
-    const WorldPtr world = make_world(busy_scene(60, 4));
+    const WorldPtr world = make_world(fast_scene());
     std::vector<std::byte> bytes;
     for (int tick = 0; tick < kTicks; ++tick) {
         if (random_below(9, 1, world->tick(), 20) == 0) {
             world->save(bytes);
-            const WorldPtr fresh = make_world(busy_scene(60, 4));
+            const WorldPtr fresh = make_world(fast_scene());
             ASSERT_TRUE(fresh->load(bytes).ok());
             for (Tick next = world->tick(); next < world->tick() + 10 && next < kTicks; ++next) {
                 ASSERT_EQ(fresh->state_hash(), straight_chain()[static_cast<std::size_t>(next)])
@@ -83,7 +90,7 @@ TEST(Determinism, LoadingIntoAFreshWorldContinuesTheChain) {
 
 /// Runs ahead with inputs that never come, back, and on: across shots, hits and despawns.
 TEST(Determinism, RollingBackMispredictionsLeavesNoTrace) {
-    const WorldPtr world = make_world(busy_scene(60, 4));
+    const WorldPtr world = make_world(fast_scene());
     std::vector<std::byte> bytes;
     std::uint64_t created_rolled_back = 0;
     std::uint64_t destroyed_rolled_back = 0;
@@ -106,7 +113,7 @@ TEST(Determinism, RollingBackMispredictionsLeavesNoTrace) {
 }
 
 TEST(Determinism, DroppingCachesChangesNoBit) {
-    const WorldPtr world = make_world(busy_scene(60, 4));
+    const WorldPtr world = make_world(fast_scene());
     for (int tick = 0; tick < kTicks; ++tick) {
         if (random_below(11, 1, world->tick(), 3) == 0) {
             world->drop_derived();
@@ -118,7 +125,7 @@ TEST(Determinism, DroppingCachesChangesNoBit) {
 }
 
 TEST(Determinism, ReadingChangesNoBit) {
-    const WorldPtr world = make_world(busy_scene(60, 4));
+    const WorldPtr world = make_world(fast_scene());
     for (int tick = 0; tick < 60; ++tick) {
         static_cast<void>(world->hash_tree());
         static_cast<void>(world->counts());

@@ -117,7 +117,9 @@ TEST(Allocations, OnePlantedInAStepIsSeen) {
 }
 
 TEST(Allocations, NoneInAStepAfterTheFirst) {
-    const WorldPtr world = make_world(busy_scene(220, 4));
+    WorldDefinition scene = busy_scene(220, 4);
+    add_bullets(scene, 30000, {0, 20, 0});
+    const WorldPtr world = make_world(scene);
     step_busy(*world);
     ASSERT_GE(world->body_count(), 224U);
     std::uint64_t in_steps = 0;

@@ -23,7 +23,7 @@ constexpr std::uint32_t kPlayers = 4;
 /// Long enough that pods have shot, balls have come and gone, and the pile has settled.
 constexpr int kLiveTicks = 200;
 
-/// With one joint of each kind above it.
+/// With one joint of each kind above it, and bullets.
 WorldDefinition arena() {
     SceneOptions options;
     options.players = kPlayers;
@@ -31,6 +31,7 @@ WorldDefinition arena() {
     EXPECT_TRUE(scene.ok());
     WorldDefinition definition = scene.value();
     add_joints(definition, 10000, {0, 30, 0});
+    add_bullets(definition, 30000, {0, 20, 0});
     return definition;
 }
 

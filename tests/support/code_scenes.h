@@ -151,10 +151,39 @@ inline void add_joints(WorldDefinition& definition, BodyId first, const Vec3& pl
     }
 }
 
-/// busy_scene with a joint of each kind above it, and a wedge that falls on the pile.
+/// A thin wall at `place`, thick ones 10 m to both sides of it, and between them two balls and a
+/// rod of each collision mode that fly at them, and at each other, at 100 m/s; ids from `first` on.
+inline void add_bullets(WorldDefinition& definition, BodyId first, const Vec3& place) {
+    BodyDefinition wall = box(first, place, {0.05, 4, 8});
+    wall.mode = BodyMode::fixed;
+    definition.bodies.push_back(wall);
+    for (const Real side : {Real(-10), Real(10)}) {
+        BodyDefinition thick = box(++first, place + Vec3{side, 0, 0}, {2, 4, 8});
+        thick.mode = BodyMode::fixed;
+        definition.bodies.push_back(thick);
+    }
+    constexpr auto kModes = static_cast<std::uint32_t>(CollisionMode::speculative) + 1;
+    for (std::uint32_t mode = 0; mode < kModes; ++mode) {
+        const Vec3 start = place + Vec3{-6, 1, Real(mode) * Real(2) - Real(3)};
+        for (std::uint32_t which = 0; which < 3; ++which) {
+            const BodyId id = first + 1 + 3 * mode + which;
+            BodyDefinition bullet =
+                which == 0 ? box(id, start + Vec3{1, 1, 0}, {0.1, 0.4, 0.1})
+                           : sphere(id, start + Vec3{Real(which) * Real(4), 0, 0}, 0.1);
+            bullet.linear_velocity = {which == 2 ? Real(-100) : Real(100), 0, 0};
+            bullet.angular_velocity = {0, 0, which == 0 ? Real(90) : Real(0)};
+            bullet.collision_mode = static_cast<CollisionMode>(mode);
+            bullet.restitution = 0.8;
+            definition.bodies.push_back(bullet);
+        }
+    }
+}
+
+/// busy_scene with a joint of each kind and bullets above it, and a wedge that falls on the pile.
 inline WorldDefinition scene_of_all(std::uint32_t count, std::uint32_t pods) {
     WorldDefinition definition = busy_scene(count, pods);
     add_joints(definition, 10000, {0, 30, 0});
+    add_bullets(definition, 30000, {0, 20, 0});
     definition.hulls = {
         {{{-0.5, 0, -0.5}, {0.5, 0, -0.5}, {0.5, 0, 0.5}, {-0.5, 0, 0.5}, {0, 0.8, 0}}}};
     BodyDefinition wedge;

@@ -25,6 +25,15 @@ enum class CombineRule : std::uint8_t {
     maximum = 4,
 };
 
+/// What a dynamic body meets on its way within a tick; at the ticks' ends all meet all.
+enum class CollisionMode : std::uint8_t {
+    discrete = 0,    // nothing: faster than its size a tick it may pass through what is thin
+    swept = 1,       // what does not move, and kinematic bodies: its way ends at the first touch
+    continuous = 2,  // dynamic bodies too, whose ways then end there as well
+    speculative = 3, // all: the solver stops it before it gets there, and it keeps the rest of its
+                     // tick; but also what it would just have missed
+};
+
 /// Groups of bodies that meet or pass through each other.
 inline constexpr std::uint32_t kLayerCount = 32;
 inline constexpr std::uint32_t kAllLayers = 0xffffffffU;
@@ -47,7 +56,8 @@ struct BodyDefinition {
     std::uint32_t layer = 0;         // below kLayerCount
     std::uint32_t mask = kAllLayers; // bit L: meets bodies of layer L whose masks agree
     bool sensor = false;             // tells what overlaps it, and stops nothing
-    bool can_sleep = true;           // false keeps what it touches awake too
+    CollisionMode collision_mode = CollisionMode::discrete;
+    bool can_sleep = true; // false keeps what it touches awake too
 };
 
 enum class JointKind : std::uint8_t {

@@ -46,9 +46,9 @@ struct BodyProperties {
     std::uint8_t layer;               // below kLayerCount
     std::uint8_t friction_rule;       // CombineRule
     std::uint8_t restitution_rule;    // CombineRule
-    std::uint8_t zero;
-    std::uint16_t hull;     // index into the world's ShapeLibrary; 0 unless a hull
-    std::uint16_t zero_end; // int64 is aligned to 8 on some machines
+    std::uint8_t collision_mode;      // CollisionMode
+    std::uint16_t hull;               // index into the world's ShapeLibrary; 0 unless a hull
+    std::uint16_t zero_end;           // int64 is aligned to 8 on some machines
 };
 static_assert(sizeof(BodyProperties) == 80);
 
@@ -106,7 +106,7 @@ inline constexpr std::array kBodyPropertiesFields{
     LOCKWIND_FIELD(BodyProperties, layer, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, friction_rule, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, restitution_rule, 0, "", ""),
-    LOCKWIND_FIELD(BodyProperties, zero, 0, "", ""),
+    LOCKWIND_FIELD(BodyProperties, collision_mode, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, hull, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, zero_end, 0, "", ""),
 };

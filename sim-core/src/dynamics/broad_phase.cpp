@@ -55,9 +55,9 @@ Bounds tight_bounds(const BodyFrame& frame, const BodyMotion& motion) {
 } // namespace
 
 BroadPhase::BroadPhase(const DynamicsSettings& settings)
-    : tick_rate_(settings.tick_rate_hz), pair_capacity_(settings.pair_capacity),
-      bounds_(settings.body_capacity), is_moved_(settings.body_capacity),
-      grid_(settings.body_capacity) {
+    : foresight_(settings), tick_rate_(settings.tick_rate_hz),
+      pair_capacity_(settings.pair_capacity), bounds_(settings.body_capacity),
+      is_moved_(settings.body_capacity), grid_(settings.body_capacity) {
     moved_.reserve(settings.body_capacity);
     added_.reserve(settings.pair_capacity);
 }
@@ -86,7 +86,10 @@ void BroadPhase::update_bounds(const DynamicsTables& tables,
     moved_.clear();
     for (const BodyRow row : awake) {
         const BodyMotion& motion = tables.motion[row];
-        const Bounds tight = tight_bounds(frames[row], motion);
+        Bounds tight = tight_bounds(frames[row], motion);
+        if (foresight_.reach(motion, tables.properties[row]) != 0) {
+            tight = foresight_.extended(tight, motion);
+        }
         if (contains(stored_bounds(motion), tight)) {
             continue;
         }

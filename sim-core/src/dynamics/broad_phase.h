@@ -3,6 +3,7 @@
 #include "dynamics/body_frame.h"
 #include "dynamics/bounds_grid.h"
 #include "dynamics/dynamics.h"
+#include "dynamics/foresight.h"
 #include "dynamics/manifold_slots.h"
 
 #include <cstdint>
@@ -48,6 +49,7 @@ private:
     bool is_gone(const Pair& pair, std::uint32_t body_count) const;
     static void merge_new_pairs(const Table<Pair>& pairs, const std::vector<Key>& added);
 
+    Foresight foresight_;
     std::uint32_t tick_rate_;
     std::uint32_t pair_capacity_;
     std::vector<Bounds> bounds_; // fat, of this tick

@@ -8,6 +8,7 @@
 #include "dynamics/narrow_phase.h"
 #include "dynamics/sleep.h"
 #include "dynamics/solver.h"
+#include "dynamics/sweep.h"
 
 #include "lockwind/world_definition.h"
 
@@ -47,9 +48,8 @@ bool link_manifolds(const Table<Manifold>& manifolds, const Table<Pair>& pairs) 
 struct Dynamics::Impl {
     Impl(const DynamicsSettings& settings, const ShapeLibrary* shapes, Simd simd)
         : activity(settings), frames(settings.body_capacity, shapes),
-          slots(settings.manifold_capacity), broad(settings),
-          narrow(settings.body_capacity, settings.joint_capacity),
-          solver(settings, contact_kernels(simd)), sleep(settings) {
+          slots(settings.manifold_capacity), broad(settings), narrow(settings),
+          solver(settings, contact_kernels(simd)), sweep(settings), sleep(settings) {
         // A pair that goes and one that comes both change in a tick.
         changes.reserve(2 * std::size_t{settings.pair_capacity});
     }
@@ -71,6 +71,7 @@ struct Dynamics::Impl {
     BroadPhase broad;
     NarrowPhase narrow;
     Solver solver;
+    Sweep sweep;
     Sleep sleep;
     std::vector<ContactChange> changes;
     bool pairs_moved = false;
@@ -129,11 +130,14 @@ void Dynamics::wake(const DynamicsTables& tables) {
 void Dynamics::solve(const DynamicsTables& tables) {
     impl_->look(tables);
     impl_->refresh_frames(tables);
+    impl_->sweep.remember(tables, impl_->activity);
     impl_->solver.solve(tables, impl_->frames, impl_->activity);
+    impl_->sweep.run(tables, impl_->frames, impl_->activity);
 }
 
 void Dynamics::restitution(const DynamicsTables& tables) {
     impl_->solver.restitution(tables);
+    impl_->narrow.forget_foreseen(tables, impl_->slots);
 }
 
 std::span<const ContactHit> Dynamics::contact_hits() const {

@@ -94,7 +94,8 @@ public:
     void wake(const DynamicsTables& tables);
     /// Substeps: integrates velocities and positions, solves contacts with friction.
     void solve(const DynamicsTables& tables);
-    /// Newton's restitution for contacts that approached faster than 1 m/s.
+    /// Newton's restitution for contacts that approached faster than 1 m/s. What was foreseen but
+    /// does not touch is forgotten.
     void restitution(const DynamicsTables& tables);
     /// Of the last solve and restitution.
     std::span<const ContactHit> contact_hits() const;

@@ -1,5 +1,6 @@
 #include "dynamics/narrow_phase.h"
 
+#include "dynamics/pairing.h"
 #include "dynamics/solver_format.h"
 #include "geometry/bounds.h"
 #include "geometry/collide.h"
@@ -67,17 +68,28 @@ private:
 /// One look at a pair.
 class PairLook {
 public:
-    PairLook(const DynamicsTables& tables, const BodyFrames& frames, ManifoldSlots& slots)
-        : tables_(tables), frames_(frames), slots_(slots) {}
+    PairLook(const DynamicsTables& tables,
+             const BodyFrames& frames,
+             const Foresight& foresight,
+             ManifoldSlots& slots)
+        : tables_(tables), frames_(frames), foresight_(foresight), slots_(slots) {}
 
-    /// False where the manifold table is full. The pair then does not touch.
-    bool visit(Pair& pair);
+    /// Looks for what the two will meet within `reach`, too. False where the manifold table is
+    /// full. The pair then does not touch.
+    bool visit(Pair& pair, std::int32_t reach);
+    /// Whether the last visit gave the pair a manifold for this tick alone.
+    bool is_foreseen() const { return is_foreseen_; }
     /// The pair does not touch.
     void release(Pair& pair);
 
 private:
     bool is_still(const Pair& pair) const;
     bool are_apart(const Pair& pair, const std::int32_t delta[3]) const;
+    void touch(const Pair& pair, const std::int32_t delta[3], ManifoldGeometry& geometry) const;
+    bool meets_ahead(const Pair& pair,
+                     std::int32_t reach,
+                     std::int32_t delta[3],
+                     ManifoldGeometry& geometry) const;
     void write_manifold(const Pair& pair,
                         const std::int32_t delta[3],
                         const ManifoldGeometry& geometry,
@@ -85,7 +97,9 @@ private:
 
     const DynamicsTables& tables_;
     const BodyFrames& frames_;
+    const Foresight& foresight_;
     ManifoldSlots& slots_;
+    bool is_foreseen_ = false;
 };
 
 bool is_touching(const Pair& pair) {
@@ -225,33 +239,64 @@ void PairLook::write_manifold(const Pair& pair,
     }
 }
 
-bool PairLook::visit(Pair& pair) {
-    if (is_still(pair)) {
-        return true;
-    }
-    const BodyFrame& a = frames_[pair.row_a];
-    const BodyFrame& b = frames_[pair.row_b];
-    std::int32_t delta[3];
-    pair_delta(a, b, tables_.motion[pair.row_a], tables_.motion[pair.row_b], delta);
-    if (are_apart(pair, delta)) {
-        release(pair);
-        return true;
-    }
+/// Where the two are; point_count 0 where they do not touch.
+void PairLook::touch(const Pair& pair,
+                     const std::int32_t delta[3],
+                     ManifoldGeometry& geometry) const {
     ManifoldCache cache;
     cache.axis = pair.axis;
     cache.touching = is_touching(pair);
     cache.axis_separation =
         is_touching(pair) ? tables_.manifolds[pair.manifold].axis_separation : 0;
+    collide(frames_[pair.row_a].shape, frames_[pair.row_b].shape, delta, cache, geometry);
+}
+
+/// Whether the two would meet in this tick if nothing else happened; `delta` is then from where.
+bool PairLook::meets_ahead(const Pair& pair,
+                           std::int32_t reach,
+                           std::int32_t delta[3],
+                           ManifoldGeometry& geometry) const {
+    if (reach == 0 || is_sensing(tables_.properties[pair.row_a], tables_.properties[pair.row_b])) {
+        return false;
+    }
+    Foreseen ahead;
+    foresee(frames_[pair.row_a].shape, frames_[pair.row_b].shape, delta, reach, ahead);
+    geometry = ahead.geometry;
+    return geometry.point_count != 0 && foresight_.closing(tables_.motion[pair.row_a],
+                                                           tables_.motion[pair.row_b],
+                                                           ahead.normal) +
+                                                kSpeculativeMargin >
+                                            ahead.way;
+}
+
+bool PairLook::visit(Pair& pair, std::int32_t reach) {
+    is_foreseen_ = false;
+    if (is_still(pair)) {
+        return true;
+    }
+    std::int32_t delta[3];
+    pair_delta(frames_[pair.row_a],
+               frames_[pair.row_b],
+               tables_.motion[pair.row_a],
+               tables_.motion[pair.row_b],
+               delta);
     ManifoldGeometry geometry;
-    collide(a.shape, b.shape, delta, cache, geometry);
-    pair.axis = static_cast<std::uint8_t>(geometry.axis);
+    geometry.point_count = 0;
+    if (!are_apart(pair, delta)) {
+        touch(pair, delta, geometry);
+        pair.axis = static_cast<std::uint8_t>(geometry.axis);
+    }
     if (geometry.point_count == 0) {
         release(pair);
-        return true;
+        is_foreseen_ = meets_ahead(pair, reach, delta, geometry);
+        if (!is_foreseen_) {
+            return true;
+        }
     }
     if (!is_touching(pair)) {
         const std::uint32_t slot = slots_.take(tables_.manifolds);
         if (slot == kNoIndex) {
+            is_foreseen_ = false;
             return false;
         }
         pair.manifold = slot;
@@ -294,14 +339,18 @@ void tangent_of(const std::int32_t normal[3], std::int32_t tangent[3]) {
     tangent[second] = static_cast<std::int32_t>((b * inverse) >> 32);
 }
 
-NarrowPhase::NarrowPhase(std::uint32_t body_capacity, std::uint32_t joint_capacity)
-    : gates_(body_capacity), joined_(joint_capacity) {}
+NarrowPhase::NarrowPhase(const DynamicsSettings& settings)
+    : foresight_(settings), gates_(settings.body_capacity), joined_(settings.joint_capacity) {
+    foreseen_.reserve(settings.manifold_capacity);
+}
 
 void NarrowPhase::read_gates(const DynamicsTables& tables,
                              const BodyFrames& frames,
                              std::span<const BodyRow> rows) {
     for (const BodyRow row : rows) {
-        gates_[row] = {tables.sleep[row].moved, is_flat(frames[row].shape.type)};
+        gates_[row] = {tables.sleep[row].moved,
+                       is_flat(frames[row].shape.type),
+                       foresight_.reach(tables.motion[row], tables.properties[row])};
     }
 }
 
@@ -310,7 +359,13 @@ bool NarrowPhase::needs_look(const Pair& pair) const {
     const Gate& b = gates_[pair.row_b];
     const bool bears_more = is_touching(pair) && a.flat && b.flat;
     const MotionBound bound = bears_more ? MotionBound::touching : MotionBound::other;
-    return ((a.moved | b.moved) & bit_of(bound)) != 0;
+    return ((a.moved | b.moved) & bit_of(bound)) != 0 || (a.reach | b.reach) != 0;
+}
+
+/// How far ahead the two are to be looked for, Q9.22 m.
+std::int32_t NarrowPhase::reach_of(const Pair& pair) const {
+    const std::int64_t both = std::int64_t{gates_[pair.row_a].reach} + gates_[pair.row_b].reach;
+    return static_cast<std::int32_t>(std::min(both, std::int64_t{foresight_.reach_max()}));
 }
 
 StepFault NarrowPhase::run(const DynamicsTables& tables,
@@ -321,7 +376,8 @@ StepFault NarrowPhase::run(const DynamicsTables& tables,
     joined_.read(tables.joints);
     read_gates(tables, frames, activity.rows());
     read_gates(tables, frames, activity.partners());
-    PairLook look(tables, frames, slots);
+    PairLook look(tables, frames, foresight_, slots);
+    foreseen_.clear();
     StepFault fault = StepFault::none;
     for (const std::uint32_t index : activity.pairs()) {
         Pair& pair = tables.pairs[index];
@@ -329,14 +385,21 @@ StepFault NarrowPhase::run(const DynamicsTables& tables,
             continue;
         }
         const bool touched = is_touching(pair);
+        bool touches = false;
         if (joined_.has(pair.row_a, pair.row_b)) {
             look.release(pair);
         } else if (!needs_look(pair) || has_plane_only(pair, frames)) {
             continue;
-        } else if (!look.visit(pair)) {
-            fault = StepFault::manifolds_full;
+        } else {
+            if (!look.visit(pair, reach_of(pair))) {
+                fault = StepFault::manifolds_full;
+            }
+            touches = is_touching(pair) && !look.is_foreseen();
+            if (look.is_foreseen()) {
+                foreseen_.push_back(index);
+            }
         }
-        if (is_touching(pair) != touched) {
+        if (touches != touched) {
             changes.push_back({pair.row_a, pair.row_b, !touched});
         }
     }
@@ -344,7 +407,28 @@ StepFault NarrowPhase::run(const DynamicsTables& tables,
         tables.sleep[row].moved = 0;
     }
     slots.trim(tables.manifolds);
+    if (fault != StepFault::none) {
+        foreseen_.clear(); // no phase follows
+    }
     return fault;
+}
+
+void NarrowPhase::forget_foreseen(const DynamicsTables& tables, ManifoldSlots& slots) {
+    if (foreseen_.empty()) {
+        return;
+    }
+    slots.read(tables.manifolds);
+    for (const std::uint32_t index : foreseen_) {
+        Pair& pair = tables.pairs[index];
+        if (!is_sound(pair, tables) || !is_touching(pair)) {
+            continue;
+        }
+        slots.free(tables.manifolds, pair.manifold);
+        pair.manifold = kNoIndex;
+        pair.point_count = 0;
+    }
+    slots.trim(tables.manifolds);
+    foreseen_.clear();
 }
 
 } // namespace lockwind

@@ -3,6 +3,7 @@
 #include "dynamics/activity.h"
 #include "dynamics/body_frame.h"
 #include "dynamics/dynamics.h"
+#include "dynamics/foresight.h"
 #include "dynamics/joined_pairs.h"
 #include "dynamics/manifold_slots.h"
 
@@ -15,7 +16,7 @@ namespace lockwind {
 /// Looks at the pairs whose bodies moved: makes, renews and frees their manifolds.
 class NarrowPhase {
 public:
-    NarrowPhase(std::uint32_t body_capacity, std::uint32_t joint_capacity);
+    explicit NarrowPhase(const DynamicsSettings& settings);
 
     /// Appends what began and ceased to touch to `changes`, in pair order. Where the manifolds run
     /// out, the pairs that find none do not touch. Nor do those that a joint keeps from it.
@@ -24,19 +25,25 @@ public:
                   const Activity& activity,
                   ManifoldSlots& slots,
                   std::vector<ContactChange>& changes);
+    /// Frees the manifolds of pairs that do not touch, but might have in this tick.
+    void forget_foreseen(const DynamicsTables& tables, ManifoldSlots& slots);
 
 private:
     /// What decides about a look, close together for the pairs that need none.
     struct Gate {
         std::uint8_t moved; // BodySleep::moved
         bool flat;
+        std::int32_t reach; // see Foresight
     };
     void read_gates(const DynamicsTables& tables,
                     const BodyFrames& frames,
                     std::span<const BodyRow> rows);
     bool needs_look(const Pair& pair) const;
+    std::int32_t reach_of(const Pair& pair) const;
 
+    Foresight foresight_;
     std::vector<Gate> gates_;
+    std::vector<std::uint32_t> foreseen_; // pairs with a manifold for this tick alone
     JoinedPairs joined_;
 };
 

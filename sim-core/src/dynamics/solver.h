@@ -24,6 +24,8 @@ public:
     std::span<const std::uint32_t> broken_joints() const { return joints_.broken(); }
 
 private:
+    void hold_back(const DynamicsTables& tables, const Activity& activity);
+
     StepConstants constants_;
     SolverBodies bodies_;
     JointSolver joints_;

@@ -100,6 +100,7 @@ void SolverBodies::read_body(const StepConstants& constants,
     speed_bound_[row] = raw_saturate<std::int32_t>(bound >> 1);
     if (body.mode == kDynamic) {
         dynamic_rows_.push_back(row);
+        course.linear_speed_max = linear_max;
         course.angular_speed_max = angular_max;
         return;
     }
@@ -109,6 +110,17 @@ void SolverBodies::read_body(const StepConstants& constants,
         solver.angular_moved[axis] = solver.angular[axis];
         course.travel.linear[axis] = std::int64_t{solver.linear[axis]} * constants.substeps;
         course.travel.angular[axis] = std::int64_t{solver.angular[axis]} * constants.substeps;
+    }
+}
+
+void SolverBodies::hold_back(const StepConstants& constants, BodyRow row) {
+    if (row == kNoIndex) {
+        return;
+    }
+    const std::int32_t most = constants.bound_speed_max;
+    courses_[row].linear_speed_max = most;
+    for (std::int32_t& speed : bodies_[row].linear) {
+        speed = std::clamp(speed, -most, most);
     }
 }
 
@@ -151,11 +163,11 @@ void SolverBodies::give(BodyRow row, const std::int64_t linear[3], const std::in
     }
 }
 
-void SolverBodies::integrate_positions(const StepConstants& constants) {
-    const std::int32_t linear_max = constants.linear_speed_max;
+void SolverBodies::integrate_positions() {
     for (const BodyRow row : dynamic_rows_) {
         SolverBody& body = bodies_[row];
         Course& course = courses_[row];
+        const std::int32_t linear_max = course.linear_speed_max;
         const std::int32_t angular_max = course.angular_speed_max;
         for (int axis = 0; axis < 3; ++axis) {
             body.linear[axis] = std::clamp(body.linear[axis], -linear_max, linear_max);

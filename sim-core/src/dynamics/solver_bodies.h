@@ -23,10 +23,12 @@ public:
               const DynamicsTables& tables,
               const BodyFrames& frames,
               const Activity& activity);
+    /// Slows a body that something touches or holds to what the rows' format allows.
+    void hold_back(const StepConstants& constants, BodyRow row);
     /// Gravity, and what the contacts did in the substep before: that is a later substep's warm
     /// start.
     void integrate_velocities(const StepConstants& constants, std::uint32_t substep);
-    void integrate_positions(const StepConstants& constants);
+    void integrate_positions();
     /// Changes velocities, Q11.20 m/s, by what is not to be repeated in the next substep: what
     /// turns with the bodies, as joints do, starts anew there.
     void give(BodyRow row, const std::int64_t linear[3], const std::int64_t angular[3]);
@@ -60,6 +62,7 @@ private:
         std::int32_t linear_free[4];
         std::int32_t angular_free[4];
         BodyTravel travel;
+        std::int32_t linear_speed_max;
         std::int32_t angular_speed_max;
     };
 

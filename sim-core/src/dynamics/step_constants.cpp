@@ -76,9 +76,11 @@ StepConstants make_step_constants(const DynamicsSettings& settings) {
     constants.separation_max =
         static_cast<std::int32_t>(std::min(bound, std::int64_t{4} << kLengthFraction));
     constexpr Real kZero = 0;
-    const Real linear = std::clamp(settings.linear_speed_max, kZero, kSolverLinearSpeedMax);
-    constants.linear_speed_max =
-        static_cast<std::int32_t>(linear.raw() >> (32 - kVelocityFraction));
+    const auto linear = [&](Real most) {
+        return convert<Velocity>(std::clamp(settings.linear_speed_max, kZero, most)).raw();
+    };
+    constants.linear_speed_max = linear(kFreeLinearSpeedMax);
+    constants.bound_speed_max = linear(kSolverLinearSpeedMax);
     constexpr Real kAngularMax = 10000;
     constants.angular_speed_max = std::clamp(settings.angular_speed_max, kZero, kAngularMax);
     return constants;

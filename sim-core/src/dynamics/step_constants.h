@@ -11,6 +11,8 @@ inline constexpr std::uint32_t kSubstepsMax = 16;
 /// Highest speed that the solver's Q11.20 holds with room for the relative velocity of two bodies
 /// and for what impulses add before the next clamp, m/s. Larger settings mean this.
 inline constexpr Real kSolverLinearSpeedMax = 500.0;
+/// Of a body that nothing touches or holds.
+inline constexpr Real kFreeLinearSpeedMax = 1000.0;
 /// The same of angular velocity x gyration radius, which rows multiply by up to 7.
 inline constexpr Real kSolverAngularSpeedMax = 200.0;
 
@@ -52,6 +54,7 @@ struct StepConstants {
     std::int32_t gravity[kSubstepsMax][3];
     std::int32_t separation_max;   // Q9.22 m: 960 m/s in a substep, or 4 m
     std::int32_t linear_speed_max; // Q11.20 m/s
+    std::int32_t bound_speed_max;  // the same of bodies with contacts or joints
     Real angular_speed_max;        // rad/s
 };
 

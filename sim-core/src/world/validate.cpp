@@ -23,7 +23,8 @@ constexpr std::int64_t kUnitSquare = std::int64_t{1} << 60U;    // 1 in Q4.60
 constexpr std::int64_t kUnitTolerance = std::int64_t{1} << 42U; // 2^-18 of it
 constexpr std::uint32_t kSpawnCountMax = 0x7fffffffU;
 constexpr std::int32_t kMotionSumMax = 1 << 20U; // Q9.22: 25 cm
-constexpr std::int64_t kFatBoundsSlack = 2;      // m a side, beyond the body
+constexpr std::int64_t kFatBoundsSlack = 2;      // m in all, beyond the body
+constexpr std::int64_t kForesightSlack = 5;      // m more of one that looks ahead, see Foresight
 
 Error bad(const char* section_name, std::uint32_t row, const char* field) {
     return Error{std::string("snapshot: ") + section_name + " row " + std::to_string(row) + ": " +
@@ -70,8 +71,10 @@ bool is_empty_or_near(const BodyMotion& motion, const BodyProperties& properties
         return *bounds == kUnbounded;
     }
     // Q9.22 to Q15.16, and both sides of the body.
-    const std::int64_t side_max =
-        (std::int64_t{properties.bounding_radius} >> 5U) + (kFatBoundsSlack << 16U);
+    constexpr auto kSpeculative = static_cast<std::uint8_t>(CollisionMode::speculative);
+    const std::int64_t slack =
+        kFatBoundsSlack + (properties.collision_mode == kSpeculative ? kForesightSlack : 0);
+    const std::int64_t side_max = (std::int64_t{properties.bounding_radius} >> 5U) + (slack << 16U);
     for (int axis = 0; axis < 3; ++axis) {
         const std::int64_t side = std::int64_t{bounds->high[axis]} - bounds->low[axis];
         if (side < 0 || side > side_max) {
@@ -180,7 +183,10 @@ const char* bad_properties_field(const BodyProperties& properties) {
     if (!all_within(properties.surface_velocity, convert<Velocity>(kSurfaceSpeedMax).raw())) {
         return "surface_velocity";
     }
-    if (properties.zero != 0 || properties.zero_end != 0) {
+    if (properties.collision_mode > static_cast<std::uint8_t>(CollisionMode::speculative)) {
+        return "collision_mode";
+    }
+    if (properties.zero_end != 0) {
         return "zero";
     }
     return nullptr;

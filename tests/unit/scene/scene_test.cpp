@@ -104,6 +104,21 @@ TEST(Scene, CombineRulesComeFromMaterialsAndBodies) {
     EXPECT_EQ(scene.bodies[2].friction_rule, CombineRule::multiply);
 }
 
+TEST(Scene, CollisionModesAreRead) {
+    const WorldDefinition scene =
+        parse("name: \"t\" body { sphere { radius: 1 } } "
+              "body { collision_mode: swept sphere { radius: 1 } } "
+              "body { collision_mode: continuous sphere { radius: 1 } } "
+              "body { collision_mode: speculative sphere { radius: 1 } }");
+    EXPECT_EQ(scene.bodies[0].collision_mode, CollisionMode::discrete);
+    EXPECT_EQ(scene.bodies[1].collision_mode, CollisionMode::swept);
+    EXPECT_EQ(scene.bodies[2].collision_mode, CollisionMode::continuous);
+    EXPECT_EQ(scene.bodies[3].collision_mode, CollisionMode::speculative);
+    EXPECT_EQ(body_error("body { collision_mode: fast sphere { radius: 1 } }"),
+              "t.textproto:2:24: collision_mode cannot be \"fast\"; it is one of: discrete, swept, "
+              "continuous, speculative");
+}
+
 TEST(Scene, SettingsOfSleepAndBoundsAreRead) {
     const WorldDefinition scene =
         parse("name: \"t\" settings { sleep_speed: 0.25 sleep_seconds: 2 bounds_policy: wrap }");

@@ -1,3 +1,4 @@
+#include "base/canonical.h"
 #include "base/field_access.h"
 #include "dynamics/contact.h"
 #include "tests/support/code_scenes.h"
@@ -108,7 +109,10 @@ void expect_hashed(World& world, const HashTree& before, const FieldPlace& place
     for (std::uint32_t other = 0; other < before.sections.size(); ++other) {
         EXPECT_EQ(after.sections[other] == before.sections[other], other != place.section);
     }
-    const std::size_t page = (offset + field.offset_bytes) / kHashPageBytes;
+    // A row may lie in two pages.
+    const std::size_t within =
+        field.offset_bytes + place.component * component_size_bytes(field.type);
+    const std::size_t page = (offset + within) / kHashPageBytes;
     EXPECT_NE(after.pages[place.section][page], before.pages[place.section][page]);
     write_component(field, place.component, row, raw);
 }
@@ -212,7 +216,8 @@ TEST(Snapshot, RefusesDamagedBodies) {
         {"friction", [](World& w) { properties(w).friction = -1; }},
         {"friction", [](World& w) { properties(w).friction = 0x7fffffff; }},
         {"restitution", [](World& w) { properties(w).restitution = 0x7fffffff; }},
-        {"padding", [](World& w) { properties(w).zero = 1; }},
+        {"collision mode", [](World& w) { properties(w).collision_mode = 9; }},
+        {"padding", [](World& w) { properties(w).zero_end = 1; }},
         {"spawn count",
          [](World& w) { rows<BodyLife>(w, section::kBodyLife)[20].spawn_count = 0x80000000U; }},
         {"kind beyond the kinds",
