@@ -63,7 +63,7 @@ PUBLIC = {
     "geometry": "shape",
     "dynamics": "simd world_definition",
     "systems": "player_input",
-    "world": "query world",
+    "world": "ccd query world",
     "simulation": "simulation",
     "session": "session",
     "session_world": "world_simulation",

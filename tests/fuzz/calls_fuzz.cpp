@@ -110,6 +110,7 @@ BodyDefinition draw_body(Draws& draws) {
         body.mask = static_cast<std::uint32_t>(draws.word());
         body.sensor = draws.flag();
         body.can_sleep = draws.flag();
+        body.collision_mode = static_cast<CollisionMode>(draws.below(draws.is_tame() ? 4 : 5));
     }
     return body;
 }
@@ -254,6 +255,9 @@ private:
         return true;
     }
     bool look() {
+        for (const FastBody& fast : world_.fast_bodies()) {
+            LOCKWIND_ASSERT(2 * fast.way > fast.size && fast.size > 0);
+        }
         for (const ContactView& contact : world_.contacts()) {
             LOCKWIND_ASSERT(contact.body_a < contact.body_b && contact.point_count > 0);
         }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lockwind/ccd.h"
 #include "lockwind/event.h"
 #include "lockwind/kept_state.h"
 #include "lockwind/query.h"
@@ -106,6 +107,8 @@ public:
     std::uint32_t score(Slot slot) const;
     /// Touching pairs as the last step left them, those of sensors too, by (body_a, body_b).
     std::vector<ContactView> contacts() const;
+    /// Dynamic bodies that are fast for their size, by id, whatever their mode.
+    std::vector<FastBody> fast_bodies() const;
 
     /// Between steps, all immediate; SI units, world frame. False where there is no such dynamic
     /// body. None of these makes events.
