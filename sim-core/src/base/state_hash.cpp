@@ -2,7 +2,6 @@
 
 #include "base/canonical.h"
 
-
 #include <algorithm>
 #include <bit>
 #include <cstring>

@@ -19,6 +19,23 @@ TEST(NarrowPhase, RestingManifoldsAreNotMadeAnew) {
     EXPECT_TRUE(std::equal(before.separation, before.separation + 4, after.separation));
 }
 
+TEST(NarrowPhase, AManifoldThatDriftsLittleIsKeptHoweverOftenItIsLookedAt) {
+    DynamicsBench bench({}, 8);
+    bench.add(fixed(box(50, 1, 50, vec(0, -1, 0))));
+    const BodyRow row = bench.add(cube(0.5, vec(0, 0.5, 0)));
+    bench.run(60);
+    const Manifold before = bench.state().manifolds[0];
+    const auto look_after_moving = [&](double way) {
+        bench.motion(row).position[0] += real(way).raw();
+        bench.look_again();
+        EXPECT_EQ(bench.dynamics().narrow_phase(bench.tables()), StepFault::none);
+        return bench.state().manifolds[0].centre_delta[0];
+    };
+    EXPECT_EQ(look_after_moving(0.02), before.centre_delta[0]);
+    EXPECT_EQ(look_after_moving(0.02), before.centre_delta[0]);
+    EXPECT_NE(look_after_moving(0.02), before.centre_delta[0]) << "farther than 50 mm";
+}
+
 TEST(NarrowPhase, SlidingBoxRenewsItsManifoldBeforeItDriftsFiveCentimetres) {
     DynamicsBench bench({}, 8);
     bench.add(fixed(box(50, 1, 50, vec(0, -1, 0))));

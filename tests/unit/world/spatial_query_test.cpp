@@ -224,6 +224,12 @@ TEST(WorldRayCastAll, TellsEachBodyOnceByFractionThenId) {
         EXPECT_NEAR(to_double(hits[index].fraction), fractions[index], 1e-7);
     }
     EXPECT_EQ(world->ray_cast({0.75, 0, 0}, {0.75, 0, 10}), hits[0]);
+    const std::vector<RayHit> back = world->ray_cast_all({0.75, 0, 10}, {0.75, 0, 0});
+    ASSERT_EQ(back.size(), 4U);
+    const BodyId ids_back[] = {3, 4, 9, 2};
+    for (std::size_t index = 0; index < 4; ++index) {
+        EXPECT_EQ(back[index].body, ids_back[index]);
+    }
     EXPECT_EQ(world->shape_cast(ball(0.1), {0.75, 0, 3.5}, {}, {0, 0, 9})->body, 4U) << "a tie";
 }
 
