@@ -182,6 +182,7 @@ BodyDefinition BodyReader::read_common(const scene_text::Body& body,
     definition.mask = layers_.read_mask(body.ignores(), reader);
     definition.sensor = body.sensor();
     definition.collision_mode = static_cast<CollisionMode>(body.collision_mode());
+    definition.substeps = reader.count("substeps", 0, {1, 16, ""});
     definition.can_sleep = !body.has_can_sleep() || body.can_sleep();
     return definition;
 }

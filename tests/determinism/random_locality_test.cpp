@@ -60,6 +60,7 @@ void add_group(WorldDefinition& scene, const Group& group) {
         BodyDefinition& body = scene.bodies.back();
         body.restitution = group.draw(40 + index, 4) == 0 ? Real(0.6) : Real(0);
         body.collision_mode = static_cast<CollisionMode>(group.draw(70 + index, 4));
+        body.substeps = group.draw(90 + index, 6) == 0 ? group.draw(110 + index, 17) : 0;
         body.linear_velocity.z = group.draw(100 + index, 4) == 0 ? Real(70) : Real(0);
     }
     BodyDefinition paddle = box(group.first_id + 60, {x - Real(14), 0.5, 8}, {0.3, 0.3, 3});

@@ -111,6 +111,7 @@ BodyDefinition draw_body(Draws& draws) {
         body.sensor = draws.flag();
         body.can_sleep = draws.flag();
         body.collision_mode = static_cast<CollisionMode>(draws.below(draws.is_tame() ? 4 : 5));
+        body.substeps = draws.below(4) == 0 ? draws.below(draws.is_tame() ? 17 : 40) : 0;
     }
     return body;
 }

@@ -57,7 +57,8 @@ struct BodyDefinition {
     std::uint32_t mask = kAllLayers; // bit L: meets bodies of layer L whose masks agree
     bool sensor = false;             // tells what overlaps it, and stops nothing
     CollisionMode collision_mode = CollisionMode::discrete;
-    bool can_sleep = true; // false keeps what it touches awake too
+    std::uint32_t substeps = 0; // 1 .. 16 a tick of its island's; 0: the settings'
+    bool can_sleep = true;      // false keeps what it touches awake too
 };
 
 enum class JointKind : std::uint8_t {

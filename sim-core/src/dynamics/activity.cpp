@@ -1,5 +1,7 @@
 #include "dynamics/activity.h"
 
+#include "lockwind/world_definition.h"
+
 #include <algorithm>
 
 namespace lockwind {
@@ -11,16 +13,24 @@ Activity::Activity(const DynamicsSettings& capacities) : part_(capacities.body_c
     joints_.reserve(capacities.joint_capacity);
 }
 
-void Activity::read_rows(const Table<BodySleep>& sleep) {
+void Activity::begin(std::uint32_t row_count) {
     rows_.clear();
     partners_.clear();
     pairs_.clear();
     joints_.clear();
-    row_count_ = sleep.count();
+    row_count_ = row_count;
+    std::fill_n(part_.begin(), row_count, Part::none);
+}
+
+bool Activity::is_dynamic(const DynamicsTables& tables, BodyRow row) {
+    return tables.properties[row].mode == static_cast<std::uint8_t>(BodyMode::dynamic);
+}
+
+void Activity::read_rows(const Table<BodySleep>& sleep) {
+    begin(sleep.count());
     for (BodyRow row = 0; row < row_count_; ++row) {
-        const bool awake = sleep[row].asleep == 0;
-        part_[row] = awake ? Part::awake : Part::none;
-        if (awake) {
+        if (sleep[row].asleep == 0) {
+            part_[row] = Part::awake;
             rows_.push_back(row);
         }
     }

@@ -20,6 +20,40 @@ public:
     /// After read_rows.
     void read_joints(const Table<Joint>& joints);
 
+    /// The part of `whole` that concerns the dynamic rows that `takes(row)` takes, and those that
+    /// are not dynamic.
+    template <class Takes>
+    void read_part(const Activity& whole, const DynamicsTables& tables, Takes takes) {
+        begin(tables.sleep.count());
+        const auto is_ours = [&](BodyRow row) {
+            return row != kNoIndex && whole.is_awake(row) && is_dynamic(tables, row) && takes(row);
+        };
+        for (const BodyRow row : whole.rows()) {
+            if (!is_dynamic(tables, row) || takes(row)) {
+                part_[row] = Part::awake;
+                rows_.push_back(row);
+            }
+        }
+        for (const std::uint32_t index : whole.pairs()) {
+            const Pair& pair = tables.pairs[index];
+            if (pair.point_count != 0 && (is_ours(pair.row_a) || is_ours(pair.row_b))) {
+                pairs_.push_back(index);
+                add_partner(pair.row_a);
+                add_partner(pair.row_b);
+            }
+        }
+        for (const std::uint32_t index : whole.joints()) {
+            const Joint& joint = tables.joints[index];
+            if (is_ours(joint.row_a) || is_ours(joint.row_b)) {
+                joints_.push_back(index);
+                add_partner(joint.row_b);
+                if (joint.row_a != kNoIndex) {
+                    add_partner(joint.row_a);
+                }
+            }
+        }
+    }
+
     /// In row order.
     std::span<const BodyRow> rows() const { return rows_; }
     /// Sleeping rows that pairs() and joints() name, each once.
@@ -32,7 +66,9 @@ public:
 
 private:
     enum class Part : std::uint8_t { none = 0, awake = 1, partner = 2 };
+    void begin(std::uint32_t row_count);
     void add_partner(BodyRow row);
+    static bool is_dynamic(const DynamicsTables& tables, BodyRow row);
 
     std::uint32_t row_count_ = 0;
     std::vector<BodyRow> rows_;

@@ -48,7 +48,8 @@ struct BodyProperties {
     std::uint8_t restitution_rule;    // CombineRule
     std::uint8_t collision_mode;      // CollisionMode
     std::uint16_t hull;               // index into the world's ShapeLibrary; 0 unless a hull
-    std::uint16_t zero_end;           // int64 is aligned to 8 on some machines
+    std::uint8_t substeps;            // 1 .. kSubstepsMax; 0: the settings'
+    std::uint8_t zero_end;            // int64 is aligned to 8 on some machines
 };
 static_assert(sizeof(BodyProperties) == 80);
 
@@ -108,6 +109,7 @@ inline constexpr std::array kBodyPropertiesFields{
     LOCKWIND_FIELD(BodyProperties, restitution_rule, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, collision_mode, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, hull, 0, "", ""),
+    LOCKWIND_FIELD(BodyProperties, substeps, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, zero_end, 0, "", ""),
 };
 

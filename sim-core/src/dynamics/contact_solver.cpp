@@ -161,7 +161,6 @@ ContactSolver::ContactSolver(const DynamicsSettings& settings, const ContactKern
       colouring_(settings.body_capacity, settings.pair_capacity),
       layout_(settings.manifold_capacity) {
     impacts_.reserve(settings.manifold_capacity);
-    hits_.reserve(settings.manifold_capacity);
 }
 
 void ContactSolver::prepare(const StepConstants& constants,
@@ -169,7 +168,6 @@ void ContactSolver::prepare(const StepConstants& constants,
                             const BodyFrames& frames,
                             const Activity& activity,
                             SolverBodies& bodies) {
-    hits_.clear();
     colouring_.run(tables, activity);
     layout_.run(tables, colouring_.contacts());
     fill_blocks(constants, tables, frames, bodies);
@@ -283,14 +281,14 @@ void ContactSolver::bounce(const DynamicsTables& tables, SolverBodies& bodies) {
     }
 }
 
-void ContactSolver::list_hits(const DynamicsTables& tables) {
+void ContactSolver::list_hits(const DynamicsTables& tables, std::vector<ContactHit>& hits) {
     std::sort(impacts_.begin(), impacts_.end(), [](const Impact& x, const Impact& y) {
         return x.pair < y.pair;
     });
     for (const Impact& impact : impacts_) {
         if (impact.load_max > kBounceSpeed) {
             const Pair& pair = tables.pairs[impact.pair];
-            hits_.push_back({pair.row_a, pair.row_b, impact.load_max});
+            hits.push_back({pair.row_a, pair.row_b, impact.load_max});
         }
     }
 }

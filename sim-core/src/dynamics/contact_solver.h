@@ -33,8 +33,8 @@ public:
     /// Contacts that approached fast: they may bounce, and are hits.
     bool has_impacts() const { return !impacts_.empty(); }
     void bounce(const DynamicsTables& tables, SolverBodies& bodies);
-    void list_hits(const DynamicsTables& tables);
-    std::span<const ContactHit> hits() const { return hits_; }
+    /// Appends them in pair order.
+    void list_hits(const DynamicsTables& tables, std::vector<ContactHit>& hits);
 
 private:
     struct Impact {
@@ -61,7 +61,6 @@ private:
     Colouring colouring_;
     BlockLayout layout_;
     std::vector<Impact> impacts_; // in solving order
-    std::vector<ContactHit> hits_;
 };
 
 } // namespace lockwind

@@ -1,6 +1,7 @@
 #include "dynamics/make_body.h"
 
 #include "dynamics/definition_checker.h"
+#include "dynamics/step_constants.h"
 #include "geometry/bounds.h"
 #include "geometry/fixed_geometry.h"
 #include "geometry/mass.h"
@@ -114,6 +115,7 @@ void check_definition(const BodyDefinition& definition,
         definition.restitution_rule <= CombineRule::maximum, "restitution_rule", "is unknown");
     checker.require(
         definition.collision_mode <= CollisionMode::speculative, "collision_mode", "is unknown");
+    checker.require(definition.substeps <= kSubstepsMax, "substeps", "is more than 16");
     checker.vector_range("surface_velocity", definition.surface_velocity, kSurfaceSpeedMax, " m/s");
     checker.range("density", definition.density, 0, kDensityMax, " kg/m^3");
     checker.range("mass", definition.mass, 0, kBodyMassMax, " kg");
@@ -380,6 +382,7 @@ Status make_body(const BodyDefinition& definition,
     new_properties.layer = static_cast<std::uint8_t>(definition.layer);
     new_properties.mask = definition.mask & settings.layer_masks[definition.layer];
     new_properties.collision_mode = static_cast<std::uint8_t>(definition.collision_mode);
+    new_properties.substeps = static_cast<std::uint8_t>(definition.substeps);
     new_properties.friction_rule = static_cast<std::uint8_t>(definition.friction_rule);
     new_properties.restitution_rule = static_cast<std::uint8_t>(definition.restitution_rule);
     new_properties.friction = convert<Coefficient>(definition.friction).raw();

@@ -108,8 +108,6 @@ void SolverBodies::read_body(const StepConstants& constants,
     for (int axis = 0; axis < 3; ++axis) {
         solver.linear_moved[axis] = solver.linear[axis];
         solver.angular_moved[axis] = solver.angular[axis];
-        course.travel.linear[axis] = std::int64_t{solver.linear[axis]} * constants.substeps;
-        course.travel.angular[axis] = std::int64_t{solver.angular[axis]} * constants.substeps;
     }
 }
 
@@ -189,12 +187,36 @@ void SolverBodies::write(const StepConstants& constants, const DynamicsTables& t
         move_body(constants, courses_[row].travel, body, motion, tables.sleep[row]);
         clamp_velocities(constants, body, motion);
     }
+}
+
+void SolverBodies::write_kinematic(const StepConstants& constants, const DynamicsTables& tables) {
     for (const BodyRow row : kinematic_rows_) {
-        move_body(constants,
-                  courses_[row].travel,
-                  tables.properties[row],
-                  tables.motion[row],
-                  tables.sleep[row]);
+        BodyTravel travel{};
+        for (int axis = 0; axis < 3; ++axis) {
+            travel.linear[axis] =
+                std::int64_t{bodies_[row].linear_moved[axis]} * constants.substeps;
+            travel.angular[axis] =
+                std::int64_t{bodies_[row].angular_moved[axis]} * constants.substeps;
+        }
+        move_body(constants, travel, tables.properties[row], tables.motion[row], tables.sleep[row]);
+    }
+}
+
+void SolverBodies::add_bounces(const DynamicsTables& tables, std::vector<Bounce>& bounces) const {
+    for (const BodyRow row : dynamic_rows_) {
+        const BodyMotion& motion = tables.motion[row];
+        Bounce bounce{row, {}, {}};
+        bool any = false;
+        for (int axis = 0; axis < 3; ++axis) {
+            bounce.linear[axis] =
+                raw_subtract(bodies_[row].linear[axis], motion.linear_velocity[axis]);
+            bounce.angular[axis] =
+                raw_subtract(bodies_[row].angular[axis], motion.angular_velocity[axis]);
+            any = any || (bounce.linear[axis] | bounce.angular[axis]) != 0;
+        }
+        if (any) {
+            bounces.push_back(bounce);
+        }
     }
 }
 

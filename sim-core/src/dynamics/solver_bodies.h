@@ -37,7 +37,17 @@ public:
     void set_orientation(BodyRow row, const std::int32_t* orientation) {
         courses_[row].travel.orientation = orientation;
     }
+    /// What is dynamic; places, too.
     void write(const StepConstants& constants, const DynamicsTables& tables);
+    /// What is kinematic. Once a tick: it may touch bodies of several classes of substeps.
+    void write_kinematic(const StepConstants& constants, const DynamicsTables& tables);
+    /// A change of velocities, Q11.20 m/s, from the arena's to those that bodies have here.
+    struct Bounce {
+        BodyRow row;
+        std::int32_t linear[3];
+        std::int32_t angular[3];
+    };
+    void add_bounces(const DynamicsTables& tables, std::vector<Bounce>& bounces) const;
 
     /// The arena's velocities as they are now, and back: what happens after the substeps counts
     /// from them.

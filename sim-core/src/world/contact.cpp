@@ -1,6 +1,8 @@
+#include "dynamics/activity.h"
 #include "dynamics/make_body.h"
 #include "dynamics/pairing.h"
 #include "dynamics/solver_format.h"
+#include "dynamics/substep_classes.h"
 #include "geometry/rotation.h"
 #include "systems/motion.h"
 #include "world/impl.h"
@@ -74,12 +76,26 @@ ContactView view_of(const DynamicsTables& tables, const Pair& pair, std::int64_t
 
 std::vector<ContactView> World::contacts() const {
     const DynamicsTables tables = impl_->tables();
-    const std::int64_t substep_rate =
-        std::int64_t{impl_->settings.tick_rate_hz} * impl_->settings.substeps;
+    // Of those that sleep, too: their impulses are those of the last tick that they were awake in.
+    std::vector<BodySleep> awake(tables.motion.count());
+    std::uint32_t count = tables.motion.count();
+    Activity all(impl_->capacities);
+    all.read_rows({awake.data(), &count, count});
+    all.read_pairs(tables.pairs);
+    all.read_joints(tables.joints);
+    SubstepClasses classes(impl_->capacities);
+    const bool differ = classes.read(tables, all);
+    const auto rate_of = [&](const Pair& pair) {
+        constexpr auto kDynamic = static_cast<std::uint8_t>(BodyMode::dynamic);
+        const bool a_moves = tables.properties[pair.row_a].mode == kDynamic;
+        const std::uint32_t substeps =
+            differ ? classes.of(a_moves ? pair.row_a : pair.row_b) : impl_->settings.substeps;
+        return std::int64_t{impl_->settings.tick_rate_hz} * substeps;
+    };
     std::vector<ContactView> views;
     for (const Pair& pair : tables.pairs.rows()) {
         if (pair.point_count != 0) {
-            views.push_back(view_of(tables, pair, substep_rate));
+            views.push_back(view_of(tables, pair, rate_of(pair)));
         }
     }
     return views;

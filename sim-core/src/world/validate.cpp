@@ -4,6 +4,7 @@
 #include "dynamics/make_body.h"
 #include "dynamics/make_joint.h"
 #include "dynamics/pairing.h"
+#include "dynamics/step_constants.h"
 #include "geometry/fixed_geometry.h"
 #include "geometry/manifold.h"
 #include "systems/spawn.h"
@@ -185,6 +186,9 @@ const char* bad_properties_field(const BodyProperties& properties) {
     }
     if (properties.collision_mode > static_cast<std::uint8_t>(CollisionMode::speculative)) {
         return "collision_mode";
+    }
+    if (properties.substeps > kSubstepsMax) {
+        return "substeps";
     }
     if (properties.zero_end != 0) {
         return "zero";

@@ -119,6 +119,15 @@ TEST(Scene, CollisionModesAreRead) {
               "continuous, speculative");
 }
 
+TEST(Scene, SubstepsOfABodyAreRead) {
+    const WorldDefinition scene = parse(
+        "name: \"t\" body { sphere { radius: 1 } } body { substeps: 16 sphere { radius: 1 } }");
+    EXPECT_EQ(scene.bodies[0].substeps, 0U);
+    EXPECT_EQ(scene.bodies[1].substeps, 16U);
+    EXPECT_NE(body_error("body { substeps: 17 sphere { radius: 1 } }").find("body[0].substeps"),
+              std::string::npos);
+}
+
 TEST(Scene, SettingsOfSleepAndBoundsAreRead) {
     const WorldDefinition scene =
         parse("name: \"t\" settings { sleep_speed: 0.25 sleep_seconds: 2 bounds_policy: wrap }");
