@@ -1,7 +1,6 @@
 #include "world/query_index.h"
 
 #include "dynamics/make_body.h"
-#include "dynamics/solver_format.h"
 #include "geometry/bounds.h"
 #include "geometry/rotation.h"
 

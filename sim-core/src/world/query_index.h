@@ -1,7 +1,7 @@
 #pragma once
 
-#include "dynamics/bounds_tree.h"
 #include "dynamics/dynamics.h"
+#include "geometry/bounds_tree.h"
 #include "geometry/shape_instance.h"
 #include "geometry/shape_library.h"
 

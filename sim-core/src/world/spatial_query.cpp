@@ -1,5 +1,5 @@
-#include "dynamics/bounds_probe.h"
 #include "dynamics/make_body.h"
+#include "geometry/bounds_probe.h"
 #include "geometry/ray_cast.h"
 #include "geometry/rotation.h"
 #include "geometry/shape_cast.h"

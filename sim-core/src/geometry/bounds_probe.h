@@ -1,6 +1,6 @@
 #pragma once
 
-#include "dynamics/bounds_grid.h"
+#include "geometry/axis_bounds.h"
 
 #include <cstdint>
 

@@ -1,8 +1,6 @@
 #pragma once
 
-#include "dynamics/bounds_grid.h"
-
-#include "lockwind/types.h"
+#include "geometry/axis_bounds.h"
 
 #include <cstdint>
 #include <span>
@@ -12,7 +10,8 @@ namespace lockwind {
 
 /// Bounds in a binary tree, split at the median along the longest side: for queries of any shape
 /// and size, where a grid would visit many cells. Built anew from the bounds; its layout decides
-/// only what a query costs, never what it finds.
+/// only what a query costs, never what it finds. A row is the place of its bounds in what was
+/// built.
 class BoundsTree {
 public:
     explicit BoundsTree(std::uint32_t capacity);
@@ -32,7 +31,7 @@ private:
 
     struct Item {
         Bounds bounds;
-        BodyRow row;
+        std::uint32_t row;
     };
     struct Node {
         Bounds bounds;
@@ -47,7 +46,7 @@ private:
 
     std::vector<Item> items_;
     std::vector<Node> nodes_; // in preorder
-    std::vector<BodyRow> unbounded_;
+    std::vector<std::uint32_t> unbounded_;
 };
 
 template <class Cost, class Visit>
@@ -61,7 +60,7 @@ void BoundsTree::visit_items(const Node& node, Cost&& cost, Visit&& visit) const
 
 template <class Cost, class Visit>
 void BoundsTree::visit(Cost&& cost, Visit&& visit) const {
-    for (const BodyRow row : unbounded_) {
+    for (const std::uint32_t row : unbounded_) {
         visit(row);
     }
     std::uint32_t stack[kStackSize];

@@ -1,6 +1,5 @@
-#include "dynamics/bounds_probe.h"
+#include "geometry/bounds_probe.h"
 
-#include "dynamics/solver_format.h"
 #include "geometry/fixed_geometry.h"
 #include "math/integer.h"
 

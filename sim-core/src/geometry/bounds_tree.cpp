@@ -1,4 +1,4 @@
-#include "dynamics/bounds_tree.h"
+#include "geometry/bounds_tree.h"
 
 #include "lockwind/assert.h"
 
@@ -26,7 +26,7 @@ void BoundsTree::build(std::span<const Bounds> bounds) {
     items_.clear();
     nodes_.clear();
     unbounded_.clear();
-    for (BodyRow row = 0; row < bounds.size(); ++row) {
+    for (std::uint32_t row = 0; row < bounds.size(); ++row) {
         if (bounds[row] == kUnbounded) {
             unbounded_.push_back(row);
         } else if (bounds[row].low[0] <= bounds[row].high[0]) {

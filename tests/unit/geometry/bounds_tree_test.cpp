@@ -1,5 +1,5 @@
-#include "dynamics/bounds_probe.h"
-#include "dynamics/bounds_tree.h"
+#include "geometry/bounds_probe.h"
+#include "geometry/bounds_tree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -97,16 +97,16 @@ TEST(BoundsTree, FindsWhatAProbeTakesOnce) {
         tree.build(all);
         for (int round = 0; round < 200; ++round) {
             const OverlapProbe probe(draws.bounds(10, 4));
-            std::vector<BodyRow> found;
-            tree.visit(probe, [&](BodyRow row) { found.push_back(row); });
+            std::vector<std::uint32_t> found;
+            tree.visit(probe, [&](std::uint32_t row) { found.push_back(row); });
             std::sort(found.begin(), found.end());
-            std::vector<BodyRow> expected;
-            for (BodyRow row = 0; row < static_cast<BodyRow>(count); ++row) {
+            std::vector<std::uint32_t> expected;
+            for (std::uint32_t row = 0; row < static_cast<std::uint32_t>(count); ++row) {
                 if (probe(all[row]) >= 0) {
                     expected.push_back(row);
                 }
             }
-            expected.push_back(static_cast<BodyRow>(count)); // the unbounded; the empty is not
+            expected.push_back(static_cast<std::uint32_t>(count)); // the unbounded; the empty is not
             ASSERT_EQ(found, expected);
         }
     }
@@ -128,7 +128,7 @@ TEST(BoundsTree, VisitsFewOfMany) {
                 ++looks;
                 return probe(bounds);
             },
-            [&](BodyRow) { ++visits; });
+            [&](std::uint32_t) { ++visits; });
     }
     EXPECT_LT(looks, kRays * 500) << "an eighth of the bodies";
     EXPECT_GT(visits, kRays / 4);
@@ -148,7 +148,7 @@ TEST(BoundsTree, NearerNodesComeFirst) {
         const Segment segment{{-1100 * sign, 0, 0}, {2200 * sign, 0.01, 0.01}};
         SegmentProbe probe = segment.probe(kNoExtents);
         int visits = 0;
-        tree.visit(probe, [&](BodyRow row) {
+        tree.visit(probe, [&](std::uint32_t row) {
             ++visits;
             const double x = all[row].low[0] / kMetre;
             probe.shorten(std::llround((x + 1100 * sign) / (2200 * sign) * 0x1p32));
