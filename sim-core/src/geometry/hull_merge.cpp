@@ -140,18 +140,21 @@ FlatPair flattest_pair(const HullSurface& surface, const EdgeTable& edges) {
 /// A vertex that only two faces have lies on the edge between them.
 void drop_vertices_in_edges(HullSurface& surface) {
     std::vector<std::uint32_t> uses(surface.vertices.size(), 0);
+    std::vector<std::size_t> least_size(surface.vertices.size(), kNone);
     for (const Face& face : surface.faces) {
         for (const std::uint32_t vertex : face) {
             ++uses[vertex];
+            least_size[vertex] = std::min(least_size[vertex], face.size());
         }
     }
+    // One that goes from one of the two must go from the other, or their edges no longer meet.
     for (Face& face : surface.faces) {
-        if (face.size() > 3) {
-            face.erase(std::remove_if(face.begin(),
-                                      face.end(),
-                                      [&](std::uint32_t vertex) { return uses[vertex] == 2; }),
-                       face.end());
-        }
+        face.erase(std::remove_if(face.begin(),
+                                  face.end(),
+                                  [&](std::uint32_t vertex) {
+                                      return uses[vertex] == 2 && least_size[vertex] > 3;
+                                  }),
+                   face.end());
     }
 }
 
@@ -219,8 +222,9 @@ std::array<Int128, 3> face_area(const HullSurface& surface, std::span<const std:
 }
 
 void merge_flat_faces(HullSurface& surface) {
+    constexpr std::size_t kFacesMin = 4; // of a solid: fewer would have no volume
     tidy(surface);
-    for (;;) {
+    while (surface.faces.size() > kFacesMin) {
         const EdgeTable edges(surface);
         const FlatPair flat = flattest_pair(surface, edges);
         if (flat.first == kNone) {

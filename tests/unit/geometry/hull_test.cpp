@@ -346,6 +346,23 @@ TEST(HullErrors, SayWhatIsWrong) {
     EXPECT_EQ(error_of(sphere_points(random, 1025, 1)), "has 1025 points; give at most 1024");
 }
 
+TEST(Hull, OfAlmostFlatPointsIsRefusedOrThin) {
+    // Faces that lie within the tolerance of each other must not be united until none is left.
+    Random random(61);
+    int refused = 0;
+    for (int round = 0; round < 20000; ++round) {
+        const double thickness = std::pow(10, random.uniform(-4.5, -2));
+        Points points;
+        for (int index = 0; index < 4 + round % 8; ++index) {
+            points.push_back({random.uniform(-0.3, 0.3),
+                              random.uniform(-thickness, thickness),
+                              random.uniform(-0.3, 0.3)});
+        }
+        refused += make_hull(to_real(points)).ok() ? 0 : 1;
+    }
+    EXPECT_GT(refused, 10000);
+}
+
 TEST(Hull, StandsAtItsLimitsOfSize) {
     for (const double size : {0.0101, 249.9}) {
         const Points points = box_points(size, size, size);
