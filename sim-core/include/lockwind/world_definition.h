@@ -160,7 +160,11 @@ struct WorldSettings {
 struct WorldDefinition {
     std::string name;
     WorldSettings settings;
-    std::vector<HullDefinition> hulls; // what ShapeDefinition::hull counts
+    // What ShapeDefinition::hull, compound, height_field and mesh count.
+    std::vector<HullDefinition> hulls;
+    std::vector<CompoundDefinition> compounds;
+    std::vector<HeightFieldDefinition> height_fields;
+    std::vector<MeshDefinition> meshes;
     std::vector<BodyDefinition> bodies;
     std::vector<JointDefinition> joints;
     std::vector<PodDefinition> pods; // slot s controls pods[s]

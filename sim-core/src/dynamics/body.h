@@ -10,8 +10,8 @@
 namespace lockwind {
 
 /// What moves: row of the arena's section "body", sorted by id. Raw fixed-point values. A body's
-/// frame is that of its principal axes about its centre of mass; for a hull it is not the one that
-/// the definition has (see Hull), for all others it is.
+/// frame is that of its principal axes about its centre of mass; for hulls, compounds and surfaces
+/// it is not the one that the definition has (see ShapeBuild), for all others it is.
 struct BodyMotion {
     std::uint64_t id;
     std::int64_t position[3];        // Q31.32 m
@@ -30,7 +30,7 @@ static_assert(sizeof(BodyMotion) == 104);
 struct BodyProperties {
     std::int64_t inverse_mass;    // Q24.40 1/kg; 0 unless dynamic
     std::int32_t size[3];         // Q9.22 m: box half extents; sphere radius; capsule radius,
-                                  // half height of the segment; plane and hull 0
+                                  // half height of the segment; else 0
     std::int32_t bounding_radius; // Q9.22 m; 0 for a plane
     std::int32_t gyration_radius; // Q9.22 m: sqrt(k_min k_max); see solver.md 4
     std::int32_t inverse_gyration_radius; // Q7.24 1/m
@@ -47,7 +47,7 @@ struct BodyProperties {
     std::uint8_t friction_rule;       // CombineRule
     std::uint8_t restitution_rule;    // CombineRule
     std::uint8_t collision_mode;      // CollisionMode
-    std::uint16_t hull;               // index into the world's ShapeLibrary; 0 unless a hull
+    std::uint16_t shape_index;        // in the world's ShapeLibrary, of its type; 0 for sizes alone
     std::uint8_t substeps;            // 1 .. kSubstepsMax; 0: the settings'
     std::uint8_t zero_end;            // int64 is aligned to 8 on some machines
 };
@@ -108,7 +108,7 @@ inline constexpr std::array kBodyPropertiesFields{
     LOCKWIND_FIELD(BodyProperties, friction_rule, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, restitution_rule, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, collision_mode, 0, "", ""),
-    LOCKWIND_FIELD(BodyProperties, hull, 0, "", ""),
+    LOCKWIND_FIELD(BodyProperties, shape_index, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, substeps, 0, "", ""),
     LOCKWIND_FIELD(BodyProperties, zero_end, 0, "", ""),
 };

@@ -12,7 +12,8 @@ namespace {
 
 bool is_current(const BodyFrame& frame, const ShapeInstance& shape, const BodyMotion& motion) {
     if (frame.shape.rotation == nullptr || frame.shape.type != shape.type ||
-        frame.shape.hull != shape.hull ||
+        frame.shape.hull != shape.hull || frame.shape.compound != shape.compound ||
+        frame.shape.surface != shape.surface ||
         !std::equal(shape.size, shape.size + 3, frame.shape.size)) {
         return false;
     }
@@ -39,12 +40,12 @@ void make_frame(BodyFrame& frame, const ShapeInstance& shape, const BodyMotion& 
 ShapeInstance
 shape_of_row(const BodyProperties& body, const ShapeLibrary* shapes, const std::int32_t* rotation) {
     ShapeInstance shape{ShapeType::sphere, {body.size[0], body.size[1], body.size[2]}, rotation};
+    const auto type = static_cast<ShapeType>(body.shape);
     if (body.shape < static_cast<std::uint8_t>(ShapeType::hull)) {
-        shape.type = static_cast<ShapeType>(body.shape);
-    } else if (body.shape == static_cast<std::uint8_t>(ShapeType::hull) && shapes != nullptr &&
-               body.hull < shapes->hull_count()) {
-        shape.type = ShapeType::hull;
-        shape.hull = &shapes->hull(body.hull);
+        shape.type = type;
+    } else if (shapes != nullptr && body.shape_index < shapes->count(type)) {
+        shape.type = type;
+        shapes->set_shape(shape, body.shape_index);
     }
     return shape;
 }

@@ -41,6 +41,14 @@ void check_shape(const ShapeDefinition& shape,
             checker.range(field, value, kShapeSizeMin, kShapeSizeMax, " m");
         }
     };
+    const auto check_index = [&](const char* field, const char* names) {
+        const std::uint32_t count = shapes.count(shape.type);
+        if (library_index(shape) >= count) {
+            checker.fail(field,
+                         "is " + std::to_string(library_index(shape)) + "; there are " +
+                             std::to_string(count) + " " + names);
+        }
+    };
     switch (shape.type) {
     case ShapeType::sphere:
         size("shape.radius", shape.radius);
@@ -59,11 +67,21 @@ void check_shape(const ShapeDefinition& shape,
             mode == BodyMode::fixed, "shape.type", "is a plane; only a fixed body may be one");
         return;
     case ShapeType::hull:
-        if (shape.hull >= shapes.hull_count()) {
-            checker.fail("shape.hull",
-                         "is " + std::to_string(shape.hull) + "; there are " +
-                             std::to_string(shapes.hull_count()) + " hulls");
-        }
+        check_index("shape.hull", "hulls");
+        return;
+    case ShapeType::compound:
+        check_index("shape.compound", "compounds");
+        return;
+    case ShapeType::height_field:
+        check_index("shape.height_field", "height fields");
+        checker.require(mode == BodyMode::fixed,
+                        "shape.type",
+                        "is a height field; only a fixed body may be one");
+        return;
+    case ShapeType::mesh:
+        check_index("shape.mesh", "meshes");
+        checker.require(
+            mode == BodyMode::fixed, "shape.type", "is a mesh; only a fixed body may be one");
         return;
     }
     checker.fail("shape.type", "is unknown");
@@ -123,12 +141,17 @@ void check_definition(const BodyDefinition& definition,
     checker.range("restitution", definition.restitution, 0, kRestitutionMax, "");
 }
 
-/// Null unless the shape is a hull.
-const Hull* hull_of(const ShapeDefinition& shape, const ShapeLibrary& shapes) {
-    return shape.type == ShapeType::hull ? &shapes.hull(shape.hull) : nullptr;
+using Build = std::optional<ShapeBuild>;
+
+Build build_of(const ShapeDefinition& shape, const ShapeLibrary& shapes) {
+    return shapes.build(shape.type, library_index(shape));
 }
 
-void fill_size(const ShapeDefinition& shape, const Hull* hull, BodyProperties& properties) {
+Build build_of(const BodyProperties& properties, const ShapeLibrary& shapes) {
+    return shapes.build(static_cast<ShapeType>(properties.shape), properties.shape_index);
+}
+
+void fill_size(const ShapeDefinition& shape, const Build& build, BodyProperties& properties) {
     const auto set = [&](int index, Real value) {
         properties.size[index] = convert<Length>(value).raw();
     };
@@ -148,11 +171,34 @@ void fill_size(const ShapeDefinition& shape, const Hull* hull, BodyProperties& p
     case ShapeType::plane:
         break;
     case ShapeType::hull:
-        properties.hull = static_cast<std::uint16_t>(shape.hull);
-        properties.bounding_radius = hull->bounding_radius;
+    case ShapeType::compound:
+    case ShapeType::height_field:
+    case ShapeType::mesh:
+        properties.shape_index = static_cast<std::uint16_t>(library_index(shape));
+        properties.bounding_radius = build->bounding_radius;
         return;
     }
     properties.bounding_radius = bounding_radius(shape.type, properties.size);
+}
+
+/// The index back again.
+void name_shape(const BodyProperties& properties, ShapeDefinition& shape) {
+    switch (shape.type) {
+    case ShapeType::hull:
+        shape.hull = properties.shape_index;
+        return;
+    case ShapeType::compound:
+        shape.compound = properties.shape_index;
+        return;
+    case ShapeType::height_field:
+        shape.height_field = properties.shape_index;
+        return;
+    case ShapeType::mesh:
+        shape.mesh = properties.shape_index;
+        return;
+    default:
+        return;
+    }
 }
 
 void set_gyration_radius(std::int64_t radius, BodyProperties& properties) {
@@ -168,11 +214,11 @@ void set_gyration_radius(std::int64_t radius, BodyProperties& properties) {
 
 /// Distance from the local axis to the farthest surface point.
 std::int64_t arm_about(const ShapeDefinition& shape,
-                       const Hull* hull,
+                       const Build& build,
                        const BodyProperties& properties,
                        int axis) {
-    if (hull != nullptr) {
-        return hull->arm[axis];
+    if (build) {
+        return build->arm[axis];
     }
     const std::int32_t* size = properties.size;
     if (shape.type == ShapeType::box) {
@@ -185,11 +231,10 @@ std::int64_t arm_about(const ShapeDefinition& shape,
 
 /// rho = (k_min k_max)^(1/4), rho^2 / k_i, with k = I / m.
 void fill_inertia(const ShapeDefinition& shape,
-                  const Hull* hull,
+                  const Build& build,
                   BodyProperties& properties,
                   DefinitionChecker& checker) {
-    const UnitInertia inertia =
-        hull != nullptr ? hull->inertia : unit_inertia(shape.type, properties.size);
+    const UnitInertia inertia = build ? build->inertia : unit_inertia(shape.type, properties.size);
     const auto moment = [&](int axis) {
         return static_cast<std::uint64_t>(inertia.moment[axis].raw());
     };
@@ -211,7 +256,7 @@ void fill_inertia(const ShapeDefinition& shape,
     for (int axis = 0; axis < 3; ++axis) {
         const auto k = static_cast<std::int64_t>(moment(axis));
         const std::int64_t ratio = (multiply_divide(rho * rho, kTwice, k) + 1) >> 1;
-        const std::int64_t arm = arm_about(shape, hull, properties, axis) + radius / 24 + kOff;
+        const std::int64_t arm = arm_about(shape, build, properties, axis) + radius / 24 + kOff;
         // A twist about the axis has this response.
         constexpr std::int64_t kRatioMax = std::int64_t{8} << InverseInertia::kFraction;
         bearable = bearable && is_bearable(arm, rho, k) && ratio < kRatioMax;
@@ -221,15 +266,14 @@ void fill_inertia(const ShapeDefinition& shape,
 }
 
 void fill_mass(const BodyDefinition& definition,
-               const Hull* hull,
+               const Build& build,
                BodyProperties& properties,
                DefinitionChecker& checker) {
     const bool by_density = definition.mass == 0;
     Real mass = definition.mass;
     if (by_density) {
-        mass = hull != nullptr
-                   ? mass_of(hull->volume, definition.density)
-                   : mass_of(definition.shape.type, properties.size, definition.density);
+        mass = build ? mass_of(build->volume, definition.density)
+                     : mass_of(definition.shape.type, properties.size, definition.density);
     }
     if (mass < kBodyMassMin || mass > kBodyMassMax) {
         checker.fail(by_density ? "density" : "mass",
@@ -244,7 +288,7 @@ void fill_mass(const BodyDefinition& definition,
 }
 
 void fill_build(const BodyDefinition& definition,
-                const Hull* hull,
+                const Build& build,
                 BodyProperties& properties,
                 DefinitionChecker& checker) {
     const auto radius = convert<Real>(Length::from_raw(properties.bounding_radius));
@@ -263,8 +307,8 @@ void fill_build(const BodyDefinition& definition,
         set_gyration_radius(properties.bounding_radius, properties);
         return;
     }
-    fill_inertia(definition.shape, hull, properties, checker);
-    fill_mass(definition, hull, properties, checker);
+    fill_inertia(definition.shape, build, properties, checker);
+    fill_mass(definition, build, properties, checker);
 }
 
 void fill_orientation(const RealQuat& orientation, BodyMotion& motion) {
@@ -291,31 +335,31 @@ void fill_orientation(const RealQuat& orientation, BodyMotion& motion) {
     }
 }
 
-/// Turns a hull's principal axes into the frame of its points.
-RealQuat principal_turn(const Hull& hull) {
+/// Turns a shape's own axes into its definition's.
+RealQuat own_turn(const ShapeBuild& build) {
     const auto unit = [&](int index) {
-        return convert<Real>(Unit::from_raw(hull.orientation[index]));
+        return convert<Real>(Unit::from_raw(build.orientation[index]));
     };
     return {unit(0), unit(1), unit(2), unit(3)};
 }
 
-Vec3 principal_centre(const Hull& hull) {
+Vec3 own_centre(const ShapeBuild& build) {
     const auto length = [&](int index) {
-        return convert<Real>(Length::from_raw(hull.centre[index]));
+        return convert<Real>(Length::from_raw(build.centre[index]));
     };
     return {length(0), length(1), length(2)};
 }
 
 void fill_place(const Vec3& given_position,
                 const RealQuat& given_orientation,
-                const Hull* hull,
+                const Build& build,
                 BodyMotion& motion) {
     RealQuat orientation = given_orientation;
     Vec3 position = given_position;
-    if (hull != nullptr) {
+    if (build) {
         const RealQuat given = normalized(orientation);
-        orientation = given * principal_turn(*hull);
-        position += rotate(given, principal_centre(*hull));
+        orientation = given * own_turn(*build);
+        position += rotate(given, own_centre(*build));
     }
     motion.position[0] = position.x.raw();
     motion.position[1] = position.y.raw();
@@ -366,16 +410,15 @@ Status make_body(const BodyDefinition& definition,
     if (checker.failed()) {
         return checker.error();
     }
-    const Hull* hull = hull_of(definition.shape, shapes);
+    const Build build = build_of(definition.shape, shapes);
     BodyMotion new_motion{};
     BodyProperties new_properties{};
     new_properties.mode = static_cast<std::uint8_t>(definition.mode);
     new_properties.shape = static_cast<std::uint8_t>(definition.shape.type);
     new_properties.can_sleep = definition.can_sleep ? 1 : 0;
     new_properties.sensor = definition.sensor ? 1 : 0;
-    const Vec3 surface = hull != nullptr
-                             ? rotate(conjugate(principal_turn(*hull)), definition.surface_velocity)
-                             : definition.surface_velocity;
+    const Vec3 surface = build ? rotate(conjugate(own_turn(*build)), definition.surface_velocity)
+                               : definition.surface_velocity;
     new_properties.surface_velocity[0] = convert<Velocity>(surface.x).raw();
     new_properties.surface_velocity[1] = convert<Velocity>(surface.y).raw();
     new_properties.surface_velocity[2] = convert<Velocity>(surface.z).raw();
@@ -387,11 +430,11 @@ Status make_body(const BodyDefinition& definition,
     new_properties.restitution_rule = static_cast<std::uint8_t>(definition.restitution_rule);
     new_properties.friction = convert<Coefficient>(definition.friction).raw();
     new_properties.restitution = convert<Coefficient>(definition.restitution).raw();
-    fill_size(definition.shape, hull, new_properties);
-    fill_build(definition, hull, new_properties, checker);
+    fill_size(definition.shape, build, new_properties);
+    fill_build(definition, build, new_properties, checker);
 
     new_motion.id = definition.id;
-    fill_place(definition.position, definition.orientation, hull, new_motion);
+    fill_place(definition.position, definition.orientation, build, new_motion);
     check_place(new_motion, checker);
     fill_velocities(definition, new_properties, new_motion, checker);
     for (int axis = 0; axis < 3; ++axis) {
@@ -408,9 +451,11 @@ Status make_body(const BodyDefinition& definition,
 Status check_query_shape(const ShapeDefinition& shape, const ShapeLibrary& shapes) {
     DefinitionChecker checker("query");
     check_shape(shape, BodyMode::kinematic, shapes, checker);
+    checker.require(
+        shape.type != ShapeType::compound, "shape.type", "is a compound; give a convex shape");
     if (!checker.failed()) {
         BodyProperties properties{};
-        fill_size(shape, hull_of(shape, shapes), properties);
+        fill_size(shape, build_of(shape, shapes), properties);
         checker.range("shape's bounding radius",
                       convert<Real>(Length::from_raw(properties.bounding_radius)),
                       0,
@@ -426,12 +471,12 @@ void make_query_shape(const ShapeDefinition& shape,
                       const ShapeLibrary& shapes,
                       BodyMotion& motion,
                       BodyProperties& properties) {
-    const Hull* hull = hull_of(shape, shapes);
+    const Build build = build_of(shape, shapes);
     motion = {};
     properties = {};
     properties.shape = static_cast<std::uint8_t>(shape.type);
-    fill_size(shape, hull, properties);
-    fill_place(position, normalized(orientation), hull, motion);
+    fill_size(shape, build, properties);
+    fill_place(position, normalized(orientation), build, motion);
 }
 
 BodyReading
@@ -444,8 +489,8 @@ read_body(const BodyMotion& motion, const BodyProperties& properties, const Shap
     };
     if (reading.shape.type == ShapeType::box) {
         reading.shape.half_extents = {size(0), size(1), size(2)};
-    } else if (reading.shape.type == ShapeType::hull) {
-        reading.shape.hull = properties.hull;
+    } else if (const Build build = build_of(properties, shapes); build) {
+        name_shape(properties, reading.shape);
     } else if (reading.shape.type != ShapeType::plane) {
         reading.shape.radius = size(0);
     }
@@ -459,11 +504,10 @@ read_body(const BodyMotion& motion, const BodyProperties& properties, const Shap
     reading.position = {Real::from_raw(motion.position[0]),
                         Real::from_raw(motion.position[1]),
                         Real::from_raw(motion.position[2])};
-    if (reading.shape.type == ShapeType::hull) {
+    if (const Build build = build_of(properties, shapes); build) {
         reading.orientation =
             normalized(reading.orientation * turn_to_given_frame(properties, shapes));
-        reading.position -=
-            rotate(reading.orientation, principal_centre(shapes.hull(properties.hull)));
+        reading.position -= rotate(reading.orientation, own_centre(*build));
     }
     const auto linear = [&](int index) {
         return convert<Real>(Velocity::from_raw(motion.linear_velocity[index]));
@@ -489,27 +533,23 @@ read_body(const BodyMotion& motion, const BodyProperties& properties, const Shap
 ShapeInstance shape_of(const BodyProperties& properties,
                        const ShapeLibrary& shapes,
                        const std::int32_t* rotation) {
-    const auto type = static_cast<ShapeType>(properties.shape);
-    return {type,
-            {properties.size[0], properties.size[1], properties.size[2]},
-            rotation,
-            type == ShapeType::hull ? &shapes.hull(properties.hull) : nullptr};
+    ShapeInstance shape{static_cast<ShapeType>(properties.shape),
+                        {properties.size[0], properties.size[1], properties.size[2]},
+                        rotation};
+    shapes.set_shape(shape, properties.shape_index);
+    return shape;
 }
 
 Vec3 to_principal_frame(const Vec3& point,
                         const BodyProperties& properties,
                         const ShapeLibrary& shapes) {
-    if (properties.shape != static_cast<std::uint8_t>(ShapeType::hull)) {
-        return point;
-    }
-    const Hull& hull = shapes.hull(properties.hull);
-    return rotate(conjugate(principal_turn(hull)), point - principal_centre(hull));
+    const Build build = build_of(properties, shapes);
+    return build ? rotate(conjugate(own_turn(*build)), point - own_centre(*build)) : point;
 }
 
 RealQuat turn_to_given_frame(const BodyProperties& properties, const ShapeLibrary& shapes) {
-    return properties.shape == static_cast<std::uint8_t>(ShapeType::hull)
-               ? conjugate(principal_turn(shapes.hull(properties.hull)))
-               : RealQuat{};
+    const Build build = build_of(properties, shapes);
+    return build ? conjugate(own_turn(*build)) : RealQuat{};
 }
 
 } // namespace lockwind

@@ -27,8 +27,8 @@ Status make_body(const BodyDefinition& definition,
                  BodyMotion& motion,
                  BodyProperties& properties);
 
-/// Whether a query may move a shape about: one that a kinematic body may have. No allocation but
-/// for the Error, which starts "query: ".
+/// Whether a query may move a shape about: a convex one that a kinematic body may have. No
+/// allocation but for the Error, which starts "query: ".
 Status check_query_shape(const ShapeDefinition& shape, const ShapeLibrary& shapes);
 
 /// Place, orientation, shape and size of a shape that check_query_shape takes, as those of a body;
@@ -40,8 +40,8 @@ void make_query_shape(const ShapeDefinition& shape,
                       BodyMotion& motion,
                       BodyProperties& properties);
 
-/// Rows read back at the API's scale, in the frame of the definition: of a hull, the one that its
-/// points were given in.
+/// Rows read back at the API's scale, in the frame of the definition: of a hull, compound or
+/// surface, the one that its points were given in.
 struct BodyReading {
     BodyMode mode;
     ShapeDefinition shape;
@@ -65,7 +65,7 @@ Vec3 to_principal_frame(const Vec3& point,
                         const ShapeLibrary& shapes);
 
 /// The turn from a body's principal axes to the frame of its definition: the identity but for
-/// hulls.
+/// hulls and compounds.
 RealQuat turn_to_given_frame(const BodyProperties& properties, const ShapeLibrary& shapes);
 
 } // namespace lockwind

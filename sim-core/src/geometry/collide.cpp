@@ -1,6 +1,7 @@
 #include "geometry/collide.h"
 
 #include "geometry/pair_kernels.h"
+#include "geometry/surface.h"
 
 #include "lockwind/assert.h"
 
@@ -15,10 +16,28 @@ constexpr std::int64_t kDeltaMax = std::int64_t{511} << kLengthFraction;
 /// 400 m, Q31.32: leaves room for the other body's points.
 constexpr std::int64_t kHeightMax = std::int64_t{400} << 32;
 
-constexpr int kTypes = 5;
+constexpr int kTypes = 8;
 
 constexpr int pair_key(ShapeType first, ShapeType second) {
     return static_cast<int>(first) * kTypes + static_cast<int>(second);
+}
+
+/// A surface's triangle; `other` is no compound.
+void collide_surface(const ShapeInstance& surface,
+                     const ShapeInstance& other,
+                     const std::int32_t delta[3],
+                     ManifoldGeometry& out) {
+    switch (other.type) {
+    case ShapeType::sphere:
+        return collide_triangle_sphere(surface, other, delta, out);
+    case ShapeType::capsule:
+        return collide_triangle_capsule(surface, other, delta, out);
+    case ShapeType::box:
+    case ShapeType::hull:
+        return collide_triangle_polytope(surface, other, delta, out);
+    default:
+        return; // neither planes nor surfaces move
+    }
 }
 
 /// `first.type` >= `second.type`.
@@ -27,6 +46,12 @@ void collide_ordered(const ShapeInstance& first,
                      const std::int32_t delta[3],
                      const ManifoldCache& cache,
                      ManifoldGeometry& out) {
+    if (is_surface(first.type)) {
+        if (first.part < first.surface->triangle_count()) {
+            collide_surface(first, second, delta, out);
+        }
+        return;
+    }
     switch (pair_key(first.type, second.type)) {
     case pair_key(ShapeType::sphere, ShapeType::sphere):
         return collide_spheres(first, second, delta, out);
@@ -56,7 +81,7 @@ void collide_ordered(const ShapeInstance& first,
     case pair_key(ShapeType::hull, ShapeType::hull):
         return collide_polytopes(first, second, delta, cache, out);
     default:
-        return; // two planes do not meet
+        return; // two planes do not meet; a compound's children do, one by one
     }
 }
 

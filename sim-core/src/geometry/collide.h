@@ -31,7 +31,8 @@ void centre_delta_plane(const ShapeInstance& a,
 /// Contact of A and B; A is the one with the lower id, the normal points from A to B. `delta` as
 /// the functions above give it. Nothing (point_count 0) where the surfaces are more than
 /// kSpeculativeMargin apart. A plane's points are relative to the centre that `delta` assumes.
-/// Not for two planes.
+/// Of a surface, the contact of its triangle `part`. Not for two planes or surfaces, nor for a
+/// compound, whose children collide one by one.
 void collide(const ShapeInstance& a,
              const ShapeInstance& b,
              const std::int32_t delta[3],

@@ -1,5 +1,6 @@
 #include "geometry/pair_kernels.h"
 #include "geometry/polytope.h"
+#include "geometry/round_touch.h"
 #include "geometry/segments.h"
 
 #include <limits>
@@ -12,42 +13,6 @@ namespace {
 constexpr std::uint32_t kNearestFeature = 1;
 constexpr std::uint32_t kFaceFeature = 256;
 constexpr std::uint32_t kEdgeFeature = 512;
-
-/// cos 3.6 degrees, Q2.30: a normal this close to a face's gives way to it, so that a lying capsule
-/// keeps two points of one face.
-constexpr std::int32_t kFaceCosine = 1071594000;
-
-/// The one point where a sphere touches, or the end of a capsule.
-struct RoundTouch {
-    std::int32_t surface[3]; // of the hull, its frame
-    std::int32_t normal[3];
-    std::int32_t separation;
-    std::uint32_t feature;
-};
-
-void emit_touch(const ShapeInstance& hull,
-                const ShapeInstance& other,
-                const std::int32_t delta[3],
-                const RoundTouch& touch,
-                ManifoldGeometry& out) {
-    if (out.point_count == 0) {
-        rotate(hull.rotation, touch.normal, out.normal);
-    }
-    ManifoldPoint& point = out.points[out.point_count];
-    const std::int32_t lift = midway(hull, other).from_first(touch.separation);
-    for (int axis = 0; axis < 3; ++axis) {
-        point.local_a[axis] = touch.surface[axis] + scale(lift, touch.normal[axis]);
-    }
-    std::int32_t from_other[3];
-    rotate(hull.rotation, point.local_a, from_other);
-    for (int axis = 0; axis < 3; ++axis) {
-        from_other[axis] = raw_saturate<std::int32_t>(std::int64_t{from_other[axis]} - delta[axis]);
-    }
-    to_local(other, from_other, point.local_b);
-    point.separation = touch.separation;
-    point.feature = touch.feature;
-    ++out.point_count;
-}
 
 /// The capsule's segment in the hull's frame.
 struct HullSegment {
@@ -87,27 +52,6 @@ Segments HullSegment::with_edge(const HullEdge& edge) const {
     }
     complete(s);
     return s;
-}
-
-/// A range of the segment; empty where low > high.
-struct Span {
-    std::int64_t low;
-    std::int64_t high;
-};
-
-/// Narrows the range to where a height that runs from `at_low` to `at_high` is at most 0.
-void keep_below(std::int64_t at_low, std::int64_t at_high, Span& span) {
-    if (at_low <= 0 && at_high <= 0) {
-        return;
-    }
-    if (at_low > 0 && at_high > 0) {
-        span = {1, 0};
-        return;
-    }
-    // Where it is 0, by heights: at_low and at_high differ in sign, their difference fits 33 bits.
-    const std::int64_t fraction = at_low * kUnitOne / (at_low - at_high);
-    const std::int64_t crossing = span.low + round_unit_wide((span.high - span.low) * fraction);
-    (at_low > 0 ? span.low : span.high) = crossing;
 }
 
 /// Whether a part of the segment lies inside (Cyrus and Beck's clip).

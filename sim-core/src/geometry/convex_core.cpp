@@ -3,6 +3,9 @@
 #include "geometry/fixed_geometry.h"
 #include "geometry/hull.h"
 #include "geometry/rotation.h"
+#include "geometry/surface.h"
+
+#include "lockwind/assert.h"
 
 #include <algorithm>
 
@@ -72,6 +75,18 @@ void make_core(const ShapeInstance& shape, ConvexCore& core) {
             core.normal[row] = shape.rotation[3 * row + 1];
         }
         return;
+    case ShapeType::compound:
+    case ShapeType::height_field:
+    case ShapeType::mesh:
+        break;
+    }
+    LOCKWIND_ASSERT(!is_composite(shape.type));
+}
+
+void make_triangle_core(const ShapeInstance& surface, std::uint32_t index, ConvexCore& core) {
+    clear(core, 0);
+    for (std::uint32_t corner = 0; corner < 3; ++corner) {
+        add_point(surface, surface.surface->corner(index, corner), core);
     }
 }
 

@@ -18,8 +18,12 @@ struct ConvexCore {
     std::int32_t normal[3];                   // Q2.30, of a half space
 };
 
-/// Each point is rounded once to Q9.22; the rotation's own error moves it by 2 ulp at most.
+/// Each point is rounded once to Q9.22; the rotation's own error moves it by 2 ulp at most. Not for
+/// compounds and surfaces, which have a core for each part.
 void make_core(const ShapeInstance& shape, ConvexCore& core);
+
+/// The core of a surface's triangle, from the surface's centre: both its sides.
+void make_triangle_core(const ShapeInstance& surface, std::uint32_t index, ConvexCore& core);
 
 /// The core of a point: radius 0.
 void make_point_core(ConvexCore& core);

@@ -56,6 +56,16 @@ constexpr std::int64_t dot_wide(const std::int32_t a[3], const std::int32_t b[3]
            static_cast<std::int64_t>(a[2]) * b[2];
 }
 
+/// a x b of unit vectors.
+constexpr void cross_units(const std::int32_t a[3], const std::int32_t b[3], std::int32_t out[3]) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const int j = (axis + 1) % 3;
+        const int k = (axis + 2) % 3;
+        out[axis] = round_unit(static_cast<std::int64_t>(a[j]) * b[k] -
+                               static_cast<std::int64_t>(a[k]) * b[j]);
+    }
+}
+
 /// Exact squared length; needs no bound: 3 * 2^62 < 2^64.
 constexpr std::uint64_t squared_length(const std::int32_t v[3]) {
     std::uint64_t sum = 0;

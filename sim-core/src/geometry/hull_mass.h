@@ -20,10 +20,6 @@ struct HullMass {
 /// Accurate Computation of Polyhedral Mass Properties*, 1996; D. Eberly, *Polyhedral Mass
 /// Properties (Revisited)*, 2002), exact until their quotients are rounded; a solid that reaches
 /// more than 128 m from its middle is measured on a grid of 1 um.
-///
-/// The principal axes are those that Jacobi's rotations, each of at most 45 degrees, make of the
-/// given ones. Products of inertia below 2^-20 of the trace count as 0: symmetrical solids keep the
-/// axes that they were given in, though their coordinates are rounded.
 HullMass mass_of_hull(const HullSurface& surface);
 
 } // namespace lockwind

@@ -30,23 +30,6 @@ UnitInertia capsule_inertia(std::uint64_t r, std::uint64_t h) {
     return {{across, SquareMetres::from_raw(along), across}};
 }
 
-/// Cubic metres; sizes are Q9.22.
-Volume volume_of(ShapeType type, const std::int32_t size[3]) {
-    constexpr int kCubeFraction = 3 * kLengthFraction;
-    constexpr std::uint64_t kFourThirdsPi = 9658692610769497123U; // Q61
-    const auto x = static_cast<std::uint64_t>(size[0]);
-    const auto y = static_cast<std::uint64_t>(size[1]);
-    const auto z = static_cast<std::uint64_t>(size[2]);
-    if (type == ShapeType::box) {
-        return leading_bits(multiply_wide(x * y, z), kCubeFraction - 3);
-    }
-    // pi r^2 (2 h + 4/3 r) = 2/3 pi r^2 (3 h + 2 r).
-    const Volume round = type == ShapeType::sphere
-                             ? leading_bits(multiply_wide(x * x, x), kCubeFraction)
-                             : leading_bits(multiply_wide(x * x, 3 * y + 2 * x), kCubeFraction + 1);
-    return leading_bits(multiply_wide(round.mantissa, kFourThirdsPi), round.fraction + 61);
-}
-
 } // namespace
 
 UnitInertia unit_inertia(ShapeType type, const std::int32_t size[3]) {
@@ -66,6 +49,22 @@ UnitInertia unit_inertia(ShapeType type, const std::int32_t size[3]) {
     return {{moment(squared(y) + squared(z), 3),
              moment(squared(z) + squared(x), 3),
              moment(squared(x) + squared(y), 3)}};
+}
+
+Volume volume_of(ShapeType type, const std::int32_t size[3]) {
+    constexpr int kCubeFraction = 3 * kLengthFraction;
+    constexpr std::uint64_t kFourThirdsPi = 9658692610769497123U; // Q61
+    const auto x = static_cast<std::uint64_t>(size[0]);
+    const auto y = static_cast<std::uint64_t>(size[1]);
+    const auto z = static_cast<std::uint64_t>(size[2]);
+    if (type == ShapeType::box) {
+        return leading_bits(multiply_wide(x * y, z), kCubeFraction - 3);
+    }
+    // pi r^2 (2 h + 4/3 r) = 2/3 pi r^2 (3 h + 2 r).
+    const Volume round = type == ShapeType::sphere
+                             ? leading_bits(multiply_wide(x * x, x), kCubeFraction)
+                             : leading_bits(multiply_wide(x * x, 3 * y + 2 * x), kCubeFraction + 1);
+    return leading_bits(multiply_wide(round.mantissa, kFourThirdsPi), round.fraction + 61);
 }
 
 Volume leading_bits(const UInt128& value, int fraction) {

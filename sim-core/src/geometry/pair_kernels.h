@@ -69,7 +69,22 @@ void collide_polytopes(const ShapeInstance& a,
                        const ManifoldCache& cache,
                        ManifoldGeometry& out);
 
-/// Half the longest and shortest way across, Q9.22; of a plane, more than any.
+// A surface is the one of its triangles that ShapeInstance::part tells.
+void collide_triangle_sphere(const ShapeInstance& surface,
+                             const ShapeInstance& sphere,
+                             const std::int32_t delta[3],
+                             ManifoldGeometry& out);
+void collide_triangle_capsule(const ShapeInstance& surface,
+                              const ShapeInstance& capsule,
+                              const std::int32_t delta[3],
+                              ManifoldGeometry& out);
+/// A triangle and a hull or box.
+void collide_triangle_polytope(const ShapeInstance& surface,
+                               const ShapeInstance& polytope,
+                               const std::int32_t delta[3],
+                               ManifoldGeometry& out);
+
+/// Half the longest and shortest way across, Q9.22; of planes and surfaces, more than any.
 struct Girth {
     std::int32_t longest;
     std::int32_t shortest;
@@ -88,6 +103,9 @@ inline Girth girth_of(const ShapeInstance& shape) {
     case ShapeType::hull:
         return {shape.hull->width_most, shape.hull->width_least};
     case ShapeType::plane:
+    case ShapeType::compound:
+    case ShapeType::height_field:
+    case ShapeType::mesh:
         break;
     }
     return {kEndless, kEndless};

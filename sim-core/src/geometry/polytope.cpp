@@ -82,15 +82,6 @@ Polytope polytope_of_box(const std::int32_t half_extents[3], BoxFeatures& room) 
     return {room.vertices, room.faces, kBox.edges.data(), kBox.corners.data(), 8, 6, 12};
 }
 
-void cross_unit(const std::int32_t a[3], const std::int32_t b[3], std::int32_t out[3]) {
-    for (int axis = 0; axis < 3; ++axis) {
-        const int j = (axis + 1) % 3;
-        const int k = (axis + 2) % 3;
-        out[axis] = round_unit(static_cast<std::int64_t>(a[j]) * b[k] -
-                               static_cast<std::int64_t>(a[k]) * b[j]);
-    }
-}
-
 /// Direction from a face's corner to the next.
 void way_along(const Polytope& polytope,
                std::uint32_t face,
@@ -152,7 +143,7 @@ Polytope polytope_of(const ShapeInstance& shape, BoxFeatures& room) {
 FaceAxes axes_of(const Polytope& polytope, const HullFace& face) {
     FaceAxes axes{};
     way_along(polytope, static_cast<std::uint32_t>(&face - polytope.faces), 0, axes.u);
-    cross_unit(face.normal, axes.u, axes.v);
+    cross_units(face.normal, axes.u, axes.v);
     return axes;
 }
 
@@ -162,7 +153,7 @@ void side_normal(const Polytope& polytope,
                  std::int32_t normal[3]) {
     std::int32_t way[3];
     way_along(polytope, face, corner, way);
-    cross_unit(way, polytope.faces[face].normal, normal);
+    cross_units(way, polytope.faces[face].normal, normal);
 }
 
 bool nearest_point(const Polytope& polytope, const std::int32_t point[3], NearestPoint& out) {

@@ -1,8 +1,12 @@
 #include "geometry/ray_cast.h"
 
+#include "geometry/bounds_probe.h"
+#include "geometry/compound.h"
 #include "geometry/fixed_geometry.h"
 #include "geometry/hull.h"
 #include "geometry/rotation.h"
+#include "geometry/surface.h"
+#include "geometry/triangle.h"
 
 #include "lockwind/int128.h"
 #include "lockwind/integer.h"
@@ -46,6 +50,7 @@ struct LocalRay {
 struct LocalHit {
     Fraction fraction;
     std::int32_t normal[3]; // Q2.30, local
+    std::uint32_t part = 0;
 };
 
 std::int64_t widened(std::int32_t length) {
@@ -253,6 +258,99 @@ bool cast_capsule(const LocalRay& ray, const std::int32_t size[3], LocalHit& hit
     return found;
 }
 
+/// Whether a point of the triangle's plane (Q31.32) lies in it, or at its edge: by 1 um farther
+/// than it reaches, so that no ray slips through between neighbours.
+bool is_within(const Triangle& triangle, const std::int64_t point[3]) {
+    constexpr std::int64_t kSlack = std::int64_t{1} << (kRayFraction - 20);
+    for (int edge = 0; edge < 3; ++edge) {
+        std::int64_t from_corner[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            from_corner[axis] = point[axis] - widened(triangle.corners[edge][axis]);
+        }
+        if (dot_unit(triangle.edges[edge].outwards, from_corner) > kSlack) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// From its front alone.
+bool cast_triangle(const LocalRay& ray,
+                   const Surface& surface,
+                   std::uint32_t index,
+                   LocalHit& hit) {
+    const std::int32_t* normal = surface.triangle(index).normal;
+    const std::int32_t* corner = surface.corner(index, 0);
+    std::int64_t from_corner[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        from_corner[axis] = ray.start[axis] - widened(corner[axis]);
+    }
+    const std::int64_t height = dot_unit(normal, from_corner);
+    const std::int64_t down = -dot_unit(normal, ray.way);
+    if (height < 0 || down <= 0 || height > down) {
+        return false;
+    }
+    const Fraction fraction{height, down};
+    const std::int64_t point[3] = {ray.at(0, fraction), ray.at(1, fraction), ray.at(2, fraction)};
+    if (!is_within(triangle_of(surface, index), point)) {
+        return false;
+    }
+    hit = {fraction, {normal[0], normal[1], normal[2]}, index};
+    return true;
+}
+
+/// Of hits at one place that of the lowest part counts.
+bool is_sooner(const LocalHit& hit, const LocalHit& other) {
+    return before(hit.fraction, other.fraction) ||
+           (!before(other.fraction, hit.fraction) && hit.part < other.part);
+}
+
+bool cast_surface(const LocalRay& ray, const Surface& surface, LocalHit& nearest) {
+    constexpr std::int32_t kNoExtents[3] = {0, 0, 0};
+    SegmentProbe probe(ray.start, ray.way, kNoExtents);
+    bool found = false;
+    surface.tree().visit(probe, [&](std::uint32_t index) {
+        LocalHit hit{};
+        if (cast_triangle(ray, surface, index, hit) && (!found || is_sooner(hit, nearest))) {
+            found = true;
+            nearest = hit;
+            const Fraction& at = hit.fraction;
+            probe.shorten(
+                multiply_divide(at.numerator, std::int64_t{1} << kRayFraction, at.denominator));
+        }
+    });
+    return found;
+}
+
+bool cast_local(const ShapeInstance& shape, const LocalRay& ray, LocalHit& hit);
+
+bool cast_compound(const LocalRay& ray, const Compound& compound, LocalHit& nearest) {
+    bool found = false;
+    for (std::uint32_t index = 0; index < compound.child_count; ++index) {
+        const CompoundShape& child = compound.children[index];
+        const ShapeInstance shape{
+            child.type, {child.size[0], child.size[1], child.size[2]}, child.rotation, child.hull};
+        std::int64_t start[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            start[axis] = ray.start[axis] - widened(child.position[axis]);
+        }
+        LocalRay turned{};
+        inverse_rotate(child.rotation, start, turned.start);
+        inverse_rotate(child.rotation, ray.way, turned.way);
+        LocalHit hit{};
+        if (cast_local(shape, turned, hit)) {
+            hit.part = index;
+            if (!found || is_sooner(hit, nearest)) {
+                found = true;
+                nearest.fraction = hit.fraction;
+                nearest.part = index;
+                rotate(child.rotation, hit.normal, nearest.normal);
+            }
+        }
+    }
+    return found;
+}
+
 bool cast_local(const ShapeInstance& shape, const LocalRay& ray, LocalHit& hit) {
     switch (shape.type) {
     case ShapeType::sphere:
@@ -265,6 +363,11 @@ bool cast_local(const ShapeInstance& shape, const LocalRay& ray, LocalHit& hit) 
         return cast_plane(ray, hit);
     case ShapeType::hull:
         return cast_hull(ray, *shape.hull, hit);
+    case ShapeType::compound:
+        return cast_compound(ray, *shape.compound, hit);
+    case ShapeType::height_field:
+    case ShapeType::mesh:
+        return cast_surface(ray, *shape.surface, hit);
     }
     return false;
 }
@@ -310,6 +413,7 @@ bool ray_cast(const ShapeInstance& shape,
         hit.point[axis] = from[axis] + multiply_divide(way[axis], at.numerator, at.denominator);
     }
     rotate(rotation, local.normal, hit.normal);
+    hit.part = local.part;
     return true;
 }
 

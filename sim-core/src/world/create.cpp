@@ -128,7 +128,8 @@ Result<WorldPtr> World::create(const WorldDefinition& definition, Simd simd) {
         return status.error();
     }
     const DynamicsSettings capacities = dynamics_settings(definition);
-    Result<ShapeLibrary> shapes = ShapeLibrary::create(definition.hulls);
+    Result<ShapeLibrary> shapes = ShapeLibrary::create(
+        {definition.hulls, definition.compounds, definition.height_fields, definition.meshes});
     if (!shapes) {
         return shapes.error();
     }

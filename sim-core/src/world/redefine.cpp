@@ -10,7 +10,8 @@ namespace lockwind {
 namespace {
 
 bool has_shape(const BodyProperties& a, const BodyProperties& b) {
-    return a.shape == b.shape && a.hull == b.hull && std::equal(a.size, a.size + 3, b.size);
+    return a.shape == b.shape && a.shape_index == b.shape_index &&
+           std::equal(a.size, a.size + 3, b.size);
 }
 
 /// Null, or a joint that the body as it is now cannot have.

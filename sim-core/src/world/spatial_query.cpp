@@ -2,8 +2,7 @@
 #include "geometry/bounds_probe.h"
 #include "geometry/ray_cast.h"
 #include "geometry/rotation.h"
-#include "geometry/shape_cast.h"
-#include "geometry/shape_distance.h"
+#include "geometry/shape_parts.h"
 #include "world/impl.h"
 
 #include <algorithm>
@@ -189,13 +188,11 @@ std::vector<BodyId> World::overlap(const ShapeDefinition& shape,
     const QueryShape placed(shape, position, orientation, impl_->shapes);
     const OverlapProbe probe(query_bounds(placed.instance, placed.centre));
     bodies.visit(probe, [&](BodyRow row) {
-        ConvexCore core;
-        make_core(bodies.shape(row), core);
         std::int64_t delta[3];
         bodies.delta_to(placed.centre, row, delta);
         ShapeDistance distance{};
-        shape_distance(placed.core, core, delta, distance);
-        if (distance.overlapping) {
+        std::uint32_t part = 0;
+        if (distance_to_shape(placed.core, delta, bodies.shape(row), 0, distance, part)) {
             ids.push_back(bodies.id(row));
         }
     });
@@ -217,12 +214,14 @@ World::closest_point(const Vec3& point, Real distance_max, const QueryFilter& fi
     make_point_core(point_core);
     PointProbe probe(place, limit.raw());
     bodies.visit(probe, [&](BodyRow row) {
-        ConvexCore core;
-        make_core(bodies.shape(row), core);
         std::int64_t delta[3];
         bodies.delta_to(place, row, delta);
         ShapeDistance found{};
-        shape_distance(point_core, core, delta, found);
+        std::uint32_t part = 0;
+        const std::int64_t farthest = nearest ? nearest->distance.raw() : limit.raw();
+        if (!distance_to_shape(point_core, delta, bodies.shape(row), farthest, found, part)) {
+            return;
+        }
         ClosestPoint candidate{bodies.id(row), 0, point, {}};
         if (!found.overlapping) {
             candidate.distance = Real::from_raw(found.distance);
@@ -232,7 +231,7 @@ World::closest_point(const Vec3& point, Real distance_max, const QueryFilter& fi
         const bool is_nearer =
             !nearest || candidate.distance < nearest->distance ||
             (candidate.distance == nearest->distance && candidate.body < nearest->body);
-        if (candidate.distance <= limit && is_nearer) {
+        if (is_nearer) {
             nearest = candidate;
             probe.shorten(candidate.distance.raw());
         }
@@ -255,11 +254,15 @@ std::optional<ShapeCastHit> World::shape_cast(const ShapeDefinition& shape,
     const std::int64_t way[3] = {translation.x.raw(), translation.y.raw(), translation.z.raw()};
     SegmentProbe probe(placed.centre, way, placed.core.half_extents);
     bodies.visit(probe, [&](BodyRow row) {
-        ConvexCore core;
-        make_core(bodies.shape(row), core);
         ConvexCastHit found{};
-        if (!lockwind::shape_cast(
-                placed.core, placed.centre, way, core, bodies.centre(row), found)) {
+        std::uint32_t part = 0;
+        if (!cast_at_shape(placed.core,
+                           placed.centre,
+                           way,
+                           bodies.shape(row),
+                           bodies.centre(row),
+                           found,
+                           part)) {
             return;
         }
         const ShapeCastHit hit{bodies.id(row),

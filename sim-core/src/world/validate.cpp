@@ -115,7 +115,7 @@ const char* bad_motion_field(const BodyMotion& motion, const BodyProperties& pro
 
 /// What make_body derives from shape and mode alone.
 bool same_build(const BodyProperties& a, const BodyProperties& b) {
-    return a.mode == b.mode && a.shape == b.shape && a.hull == b.hull &&
+    return a.mode == b.mode && a.shape == b.shape && a.shape_index == b.shape_index &&
            a.bounding_radius == b.bounding_radius && a.gyration_radius == b.gyration_radius &&
            a.inverse_gyration_radius == b.inverse_gyration_radius &&
            std::equal(a.size, a.size + 3, b.size) &&
@@ -127,11 +127,11 @@ bool is_buildable(const BodyProperties& properties,
                   const WorldSettings& settings,
                   const ShapeLibrary& shapes) {
     if (properties.mode > static_cast<std::uint8_t>(BodyMode::dynamic) ||
-        properties.shape > static_cast<std::uint8_t>(ShapeType::hull)) {
+        properties.shape > static_cast<std::uint8_t>(ShapeType::mesh)) {
         return false;
     }
-    if (properties.shape == static_cast<std::uint8_t>(ShapeType::hull) &&
-        properties.hull >= shapes.hull_count()) {
+    if (properties.shape >= static_cast<std::uint8_t>(ShapeType::hull) &&
+        properties.shape_index >= shapes.count(static_cast<ShapeType>(properties.shape))) {
         return false;
     }
     const BodyReading reading = read_body({}, properties, shapes);
@@ -365,7 +365,7 @@ Status check_kinds(const DynamicsTables& tables,
         const bool is_known =
             known != nullptr && row < known->kinds.count() && same_build(known->kinds[row], kind);
         if (!is_known && !is_buildable(kind, settings, shapes)) {
-            return bad("body_kind", row, "mode, shape, hull, size or inertia");
+            return bad("body_kind", row, "mode, shape, index, size or inertia");
         }
         if (const char* field = bad_properties_field(kind); field != nullptr) {
             return bad("body_kind", row, field);

@@ -106,7 +106,8 @@ TEST(BoundsTree, FindsWhatAProbeTakesOnce) {
                     expected.push_back(row);
                 }
             }
-            expected.push_back(static_cast<std::uint32_t>(count)); // the unbounded; the empty is not
+            expected.push_back(
+                static_cast<std::uint32_t>(count)); // the unbounded; the empty is not
             ASSERT_EQ(found, expected);
         }
     }

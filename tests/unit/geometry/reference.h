@@ -149,6 +149,8 @@ inline double Body::distance(const Vec& from_centre) const {
         return local[1];
     case ShapeType::hull:
         return solid->distance(local);
+    default: // made of these
+        break;
     }
     return 0;
 }

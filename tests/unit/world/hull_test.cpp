@@ -282,9 +282,9 @@ TEST(HullSnapshot, RefusesHullsAndAxesThatAreNot) {
         return rows<BodyProperties>(*world, section::kBodyKind)[lives[row].body_kind];
     };
     const auto manifolds = [&] { return rows<Manifold>(*world, section::kManifold); };
-    EXPECT_TRUE(refuses([&] { kind_of(1).hull = 2; }));
-    EXPECT_TRUE(refuses([&] { kind_of(1).hull = 1; })); // another build
-    EXPECT_TRUE(refuses([&] { kind_of(0).hull = 1; })); // a plane has none
+    EXPECT_TRUE(refuses([&] { kind_of(1).shape_index = 2; }));
+    EXPECT_TRUE(refuses([&] { kind_of(1).shape_index = 1; })); // another build
+    EXPECT_TRUE(refuses([&] { kind_of(0).shape_index = 1; })); // a plane has none
     EXPECT_TRUE(refuses([&] { kind_of(1).shape = 2; }));
     EXPECT_TRUE(refuses([&] { kind_of(1).size[0] = 1; }));
     EXPECT_TRUE(refuses([&] { manifolds()[0].axis = 129; }));
