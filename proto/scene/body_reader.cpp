@@ -1,16 +1,11 @@
 #include "scene/body_reader.h"
 
-#include "geometry/mass.h"
 #include "scene/scene.h"
-
-#include "lockwind/trig.h"
 
 namespace lockwind {
 namespace {
 
 constexpr Range kSurfaceSpeed{-100, 100, "m/s"};
-constexpr Range kSize{0.01, 250, "m"};
-constexpr Range kCoordinate{-250, 250, "m"};
 constexpr Range kMass{0.001, 1e6, "kg"};
 constexpr Range kDensity{0.01, 1e5, "kg/m^3"};
 constexpr Range kFriction{0, 4, ""};
@@ -26,10 +21,6 @@ double to_double(Real value) {
 
 Range within(Real limit, std::string_view unit) {
     return {-to_double(limit), to_double(limit), unit};
-}
-
-std::int32_t to_length(Real value) {
-    return static_cast<std::int32_t>(value.raw() >> (Real::kFraction - Length::kFraction));
 }
 
 bool is_zero(const Vec3& v) {
@@ -54,54 +45,9 @@ bool is_arranged(const scene_text::Body& body) {
 BodyReader::BodyReader(const scene_text::Scene& scene,
                        const FieldReader& reader,
                        const LayerReader& layers,
+                       const ShapeReader& shapes,
                        WorldDefinition& world)
-    : scene_(scene), reader_(reader), layers_(layers), world_(world) {}
-
-void BodyReader::read_hulls() {
-    if (scene_.hull_size() > static_cast<int>(kHullsMax)) {
-        reader_.fail("hull", "is given more than " + std::to_string(kHullsMax) + " times");
-        return;
-    }
-    for (int index = 0; index < scene_.hull_size() && !reader_.failed(); ++index) {
-        read_hull(index);
-    }
-}
-
-void BodyReader::read_hull(int index) {
-    const scene_text::Hull& hull = scene_.hull(index);
-    const FieldReader reader = reader_.nested("hull", index);
-    if (hull.name().empty()) {
-        reader.fail("name", "is missing; bodies name their hull");
-    }
-    for (int former = 0; former < index; ++former) {
-        if (scene_.hull(former).name() == hull.name()) {
-            reader.fail("name", "\"" + hull.name() + "\" is the name of two hulls");
-        }
-    }
-    if (hull.point_size() > static_cast<int>(kHullPointsMax)) {
-        reader.fail("",
-                    "has " + std::to_string(hull.point_size()) + " points; give at most " +
-                        std::to_string(kHullPointsMax));
-        return;
-    }
-    HullDefinition definition;
-    for (int point = 0; point < hull.point_size(); ++point) {
-        const FieldReader components = reader.nested("point", point);
-        definition.points.push_back({components.real("x", 0, kCoordinate),
-                                     components.real("y", 0, kCoordinate),
-                                     components.real("z", 0, kCoordinate)});
-    }
-    if (reader.failed()) {
-        return;
-    }
-    const Result<Hull> made = make_hull(definition.points);
-    if (!made) {
-        reader.fail("", "\"" + hull.name() + "\" " + made.error().message);
-        return;
-    }
-    hull_volumes_.push_back(made.value().volume);
-    world_.hulls.push_back(std::move(definition));
-}
+    : scene_(scene), reader_(reader), layers_(layers), shapes_(shapes), world_(world) {}
 
 void BodyReader::read_body(int index) {
     const scene_text::Body& body = scene_.body(index);
@@ -174,8 +120,11 @@ BodyDefinition BodyReader::read_common(const scene_text::Body& body,
         break;
     }
     read_motion(reader, definition);
-    read_turn(body, reader, definition);
-    read_shape(body, reader, definition);
+    definition.orientation = read_turn(reader);
+    if (body.has_heap() && body.turn_case() != scene_text::Body::TURN_NOT_SET) {
+        reader.fail("heap", "draws its bodies' orientations; leave out the body's own");
+    }
+    shapes_.read_shape(body, reader, definition.mode == BodyMode::fixed, definition.shape);
     read_matter(body, reader, definition);
     definition.surface_velocity = reader.vector("surface_velocity", {}, kSurfaceSpeed);
     definition.layer = layers_.read_layer(body.layer(), reader);
@@ -199,90 +148,6 @@ void BodyReader::read_motion(const FieldReader& reader, BodyDefinition& definiti
     if (definition.mode == BodyMode::fixed && moves) {
         reader.fail("mode", "is fixed, but the body has a velocity; make it kinematic or dynamic");
     }
-}
-
-void BodyReader::read_turn(const scene_text::Body& body,
-                           const FieldReader& reader,
-                           BodyDefinition& definition) const {
-    constexpr Range kComponent{-1, 1, ""};
-    if (body.has_orientation()) {
-        const FieldReader quat = reader.nested("orientation");
-        const RealQuat read{quat.real("x", 0, kComponent),
-                            quat.real("y", 0, kComponent),
-                            quat.real("z", 0, kComponent),
-                            quat.real("w", 0, kComponent)};
-        if (read == RealQuat{0, 0, 0, 0}) {
-            reader.fail("orientation", "is 0; give a quaternion, w: 1 for none");
-        }
-        definition.orientation = normalized(read);
-    } else if (body.has_rotation()) {
-        const FieldReader rotation = reader.nested("rotation");
-        const Vec3 axis = rotation.vector("axis", {}, kComponent);
-        if (is_zero(axis)) {
-            rotation.fail("axis", "is 0; give a direction, such as { y: 1 }");
-        }
-        const Real degrees = rotation.real("degrees", 0, {-360, 360, "degrees"});
-        definition.orientation =
-            from_axis_angle(normalized(axis), Angle::from_turns(degrees / Real(360)));
-    }
-    if (body.has_heap() && body.turn_case() != scene_text::Body::TURN_NOT_SET) {
-        reader.fail("heap", "draws its bodies' orientations; leave out the body's own");
-    }
-}
-
-void BodyReader::read_shape(const scene_text::Body& body,
-                            const FieldReader& reader,
-                            BodyDefinition& definition) const {
-    ShapeDefinition& shape = definition.shape;
-    switch (body.shape_case()) {
-    case scene_text::Body::kSphere:
-        shape.type = ShapeType::sphere;
-        shape.radius = reader.nested("sphere").real("radius", shape.radius, kSize);
-        break;
-    case scene_text::Body::kCapsule: {
-        const FieldReader capsule = reader.nested("capsule");
-        shape.type = ShapeType::capsule;
-        shape.radius = capsule.real("radius", shape.radius, kSize);
-        shape.half_height = capsule.real("half_height", shape.half_height, kSize);
-        break;
-    }
-    case scene_text::Body::kBox:
-        shape.type = ShapeType::box;
-        if (!body.box().has_half_extents()) {
-            reader.fail("box", "has no half_extents");
-        }
-        shape.half_extents = reader.nested("box").vector("half_extents", shape.half_extents, kSize);
-        break;
-    case scene_text::Body::kPlane:
-        shape.type = ShapeType::plane;
-        if (definition.mode != BodyMode::fixed) {
-            reader.fail("plane", "has no end and cannot move; add `mode: fixed`");
-        }
-        break;
-    case scene_text::Body::kHull:
-        name_hull(body.hull(), reader, shape);
-        break;
-    default:
-        reader.fail("", "has no shape; give sphere, capsule, box, hull or plane");
-        break;
-    }
-}
-
-void BodyReader::name_hull(const std::string& name,
-                           const FieldReader& reader,
-                           ShapeDefinition& shape) const {
-    std::string names;
-    for (int index = 0; index < scene_.hull_size(); ++index) {
-        if (scene_.hull(index).name() == name) {
-            shape.type = ShapeType::hull;
-            shape.hull = static_cast<std::uint32_t>(index);
-            return;
-        }
-        names += (index == 0 ? "" : ", ") + scene_.hull(index).name();
-    }
-    reader.fail("hull",
-                "\"" + name + "\" is not defined; " +
-                    (names.empty() ? "the scene has no hulls" : "there is: " + names));
 }
 
 void BodyReader::read_matter(const scene_text::Body& body,
@@ -323,18 +188,10 @@ void BodyReader::check_mass(const FieldReader& reader, const BodyDefinition& def
     if (definition.mode != BodyMode::dynamic || definition.mass > Real(0)) {
         return;
     }
-    const ShapeDefinition& shape = definition.shape;
-    std::array<std::int32_t, 3> size{};
-    if (shape.type == ShapeType::box) {
-        size = {to_length(shape.half_extents.x),
-                to_length(shape.half_extents.y),
-                to_length(shape.half_extents.z)};
-    } else {
-        size = {to_length(shape.radius), to_length(shape.half_height), 0};
+    if (reader.failed()) {
+        return; // what it names may not be there
     }
-    const bool is_hull = shape.type == ShapeType::hull;
-    const double mass = to_double(is_hull ? mass_of(hull_volumes_[shape.hull], definition.density)
-                                          : mass_of(shape.type, size.data(), definition.density));
+    const double mass = to_double(shapes_.mass(definition.shape, definition.density));
     if (mass < kMass.min || mass > kMass.max) {
         const std::string kilograms = text_of(mass, 3) + " kg";
         const std::string limits = "; a dynamic body weighs 0.001 .. 1000000 kg";

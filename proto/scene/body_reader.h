@@ -1,10 +1,10 @@
 #pragma once
 
-#include "geometry/hull.h"
 #include "scene.pb.h"
 #include "scene/arrangement.h"
 #include "scene/field_reader.h"
 #include "scene/layer_reader.h"
+#include "scene/shape_reader.h"
 
 #include "lockwind/world_definition.h"
 
@@ -20,10 +20,9 @@ public:
     BodyReader(const scene_text::Scene& scene,
                const FieldReader& reader,
                const LayerReader& layers,
+               const ShapeReader& shapes,
                WorldDefinition& world);
 
-    /// The scene's hulls, before the bodies that name them.
-    void read_hulls();
     /// body[index]: one body, or as many as its arrangement has.
     void read_body(int index);
     /// One pod for each of `players`.
@@ -32,15 +31,6 @@ public:
 private:
     BodyDefinition read_common(const scene_text::Body& body, const FieldReader& reader) const;
     void read_motion(const FieldReader& reader, BodyDefinition& definition) const;
-    void read_turn(const scene_text::Body& body,
-                   const FieldReader& reader,
-                   BodyDefinition& definition) const;
-    void read_shape(const scene_text::Body& body,
-                    const FieldReader& reader,
-                    BodyDefinition& definition) const;
-    void read_hull(int index);
-    void
-    name_hull(const std::string& name, const FieldReader& reader, ShapeDefinition& shape) const;
     void read_matter(const scene_text::Body& body,
                      const FieldReader& reader,
                      BodyDefinition& definition) const;
@@ -55,8 +45,8 @@ private:
     const scene_text::Scene& scene_;
     const FieldReader& reader_;
     const LayerReader& layers_;
+    const ShapeReader& shapes_;
     WorldDefinition& world_;
-    std::vector<Volume> hull_volumes_; // as world_.hulls
 };
 
 } // namespace lockwind

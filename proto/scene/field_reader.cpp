@@ -108,6 +108,24 @@ FieldReader::count(const std::string& field, std::uint32_t fallback, const Range
     return static_cast<std::uint32_t>(number(field, fallback, range));
 }
 
+std::vector<Real> FieldReader::reals(const std::string& field, const Range& range) const {
+    const Descriptor& what = descriptor(field);
+    const auto& reflection = *message_->GetReflection();
+    std::vector<Real> reals;
+    for (int index = 0; index < reflection.FieldSize(*message_, &what); ++index) {
+        const double value = reflection.GetRepeatedDouble(*message_, &what, index);
+        const bool is_good = value >= range.min && value <= range.max; // NaN fails too
+        if (!is_good) {
+            fail(field,
+                 "[" + std::to_string(index) + "] is " + with_unit(text_of(value), range.unit) +
+                     "; give " + text_of(range.min) + " .. " +
+                     with_unit(text_of(range.max), range.unit));
+        }
+        reals.push_back(is_good ? to_real(value).value_or(Real(0)) : Real(0));
+    }
+    return reals;
+}
+
 Vec3 FieldReader::vector(const std::string& field, const Vec3& fallback, const Range& range) const {
     if (!has(field)) {
         return fallback;

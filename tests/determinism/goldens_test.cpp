@@ -38,6 +38,7 @@ const std::vector<GoldenRun>& golden_runs() {
         {"joints", 0, {0, 60, 300}},
         {"hulls", 4, {0, 60, 300}},
         {"bullets", 0, {0, 60, 300}},
+        {"shapes", 4, {0, 60, 300}},
     };
     return runs;
 }

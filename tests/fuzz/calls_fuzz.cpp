@@ -73,18 +73,25 @@ private:
 };
 
 ShapeDefinition draw_shape(Draws& draws) {
-    constexpr ShapeType kBounded[] = {
-        ShapeType::sphere, ShapeType::capsule, ShapeType::box, ShapeType::hull};
+    constexpr ShapeType kBounded[] = {ShapeType::sphere,
+                                      ShapeType::capsule,
+                                      ShapeType::box,
+                                      ShapeType::hull,
+                                      ShapeType::compound,
+                                      ShapeType::mesh};
     const Real least = draws.is_tame() ? Real(0.05) : Real(0);
     ShapeDefinition shape;
     // A wild one has a type that there is not.
     shape.type =
-        draws.is_tame() ? kBounded[draws.below(4)] : static_cast<ShapeType>(draws.below(6));
+        draws.is_tame() ? kBounded[draws.below(6)] : static_cast<ShapeType>(draws.below(10));
     shape.half_extents = {
         draws.positive() + least, draws.positive() + least, draws.positive() + least};
     shape.radius = draws.positive() + least;
     shape.half_height = draws.positive() + least;
     shape.hull = draws.is_tame() ? 0 : draws.below(4);
+    shape.compound = draws.is_tame() ? 0 : draws.below(4);
+    shape.height_field = draws.is_tame() ? 0 : draws.below(2);
+    shape.mesh = draws.is_tame() ? 0 : draws.below(4);
     return shape;
 }
 
@@ -175,6 +182,24 @@ WorldDefinition draw_world(Draws& draws) {
             points.points.push_back(draws.vector());
         }
         definition.hulls.push_back(points);
+    }
+    for (std::uint32_t compound = draws.below(2); compound > 0; --compound) {
+        CompoundDefinition parts;
+        for (std::uint32_t child = draws.below(5); child > 0; --child) {
+            parts.children.push_back(
+                {draw_shape(draws), draws.vector(), draws.turn(), draws.positive()});
+        }
+        definition.compounds.push_back(parts);
+    }
+    for (std::uint32_t mesh = draws.below(2); mesh > 0; --mesh) {
+        MeshDefinition triangles;
+        for (std::uint32_t vertex = 3 + draws.below(6); vertex > 0; --vertex) {
+            triangles.vertices.push_back(draws.vector());
+        }
+        for (std::uint32_t index = 3 * (1 + draws.below(4)); index > 0; --index) {
+            triangles.indices.push_back(draws.below(draws.is_tame() ? 3 : 10));
+        }
+        definition.meshes.push_back(triangles);
     }
     return definition;
 }

@@ -179,7 +179,8 @@ inline void add_bullets(WorldDefinition& definition, BodyId first, const Vec3& p
     }
 }
 
-/// busy_scene with a joint of each kind and bullets above it, and a wedge that falls on the pile.
+/// busy_scene with a joint of each kind and bullets above it; a wedge falls on the pile, and an
+/// angle piece and a box on a mesh beside it.
 inline WorldDefinition scene_of_all(std::uint32_t count, std::uint32_t pods) {
     WorldDefinition definition = busy_scene(count, pods);
     add_joints(definition, 10000, {0, 30, 0});
@@ -191,6 +192,29 @@ inline WorldDefinition scene_of_all(std::uint32_t count, std::uint32_t pods) {
     wedge.shape.type = ShapeType::hull;
     wedge.position = {0, 3, 0};
     definition.bodies.push_back(wedge);
+    CompoundDefinition angle;
+    angle.children.resize(2);
+    for (CompoundChild& child : angle.children) {
+        child.shape.type = ShapeType::box;
+        child.shape.half_extents = {0.5, 0.15, 0.15};
+    }
+    angle.children[1].position = {0.35, 0.5, 0};
+    angle.children[1].orientation = {0, 0, 0.6, 0.8};
+    definition.compounds = {angle};
+    definition.meshes = {{{{-2, 0.1, -2}, {-2, 0.1, 2}, {2, 0.3, 2}, {2, 0.1, -2}, {4, 0.4, 0}},
+                          {0, 1, 2, 0, 2, 3, 3, 2, 4}}};
+    BodyDefinition patch;
+    patch.id = 20001;
+    patch.mode = BodyMode::fixed;
+    patch.shape.type = ShapeType::mesh;
+    patch.position = {40, 0.5, 0};
+    definition.bodies.push_back(patch);
+    BodyDefinition piece;
+    piece.id = 20002;
+    piece.shape.type = ShapeType::compound;
+    piece.position = {40, 1.2, 0};
+    definition.bodies.push_back(piece);
+    definition.bodies.push_back(box(20003, {41.5, 1.1, 0.5}, {0.3, 0.2, 0.25}));
     return definition;
 }
 

@@ -1,5 +1,6 @@
 #include "dynamics/body_frame.h"
 
+#include "dynamics/pair_parts.h"
 #include "geometry/bounds.h"
 #include "geometry/collide.h"
 #include "geometry/rotation.h"
@@ -34,20 +35,6 @@ void make_frame(BodyFrame& frame, const ShapeInstance& shape, const BodyMotion& 
     } else {
         std::fill(frame.half_extents, frame.half_extents + 3, 0);
     }
-}
-
-/// `rotation` is the frame's own.
-ShapeInstance
-shape_of_row(const BodyProperties& body, const ShapeLibrary* shapes, const std::int32_t* rotation) {
-    ShapeInstance shape{ShapeType::sphere, {body.size[0], body.size[1], body.size[2]}, rotation};
-    const auto type = static_cast<ShapeType>(body.shape);
-    if (body.shape < static_cast<std::uint8_t>(ShapeType::hull)) {
-        shape.type = type;
-    } else if (shapes != nullptr && body.shape_index < shapes->count(type)) {
-        shape.type = type;
-        shapes->set_shape(shape, body.shape_index);
-    }
-    return shape;
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "dynamics/broad_phase.h"
 
+#include "dynamics/pair_parts.h"
 #include "dynamics/pairing.h"
 #include "dynamics/solver_format.h"
 #include "geometry/bounds.h"
@@ -54,9 +55,9 @@ Bounds tight_bounds(const BodyFrame& frame, const BodyMotion& motion) {
 
 } // namespace
 
-BroadPhase::BroadPhase(const DynamicsSettings& settings)
+BroadPhase::BroadPhase(const DynamicsSettings& settings, const ShapeLibrary* shapes)
     : foresight_(settings), tick_rate_(settings.tick_rate_hz),
-      pair_capacity_(settings.pair_capacity), bounds_(settings.body_capacity),
+      pair_capacity_(settings.pair_capacity), shapes_(shapes), bounds_(settings.body_capacity),
       is_moved_(settings.body_capacity), grid_(settings.body_capacity) {
     moved_.reserve(settings.body_capacity);
     added_.reserve(settings.pair_capacity);
@@ -125,39 +126,86 @@ bool BroadPhase::find_new_pairs(const DynamicsTables& tables) {
                 return;
             }
             const Bounds other_before = stored_bounds(tables.motion[other]);
-            if (!is_empty(before) && !is_empty(other_before) && overlaps(before, other_before)) {
-                return;
-            }
-            if (added_.size() == pair_capacity_) {
-                fits = false;
-                return;
-            }
-            added_.push_back({std::min(row, other), std::max(row, other)});
+            const bool is_known =
+                !is_empty(before) && !is_empty(other_before) && overlaps(before, other_before);
+            fits = add_pair(tables, row, other, is_known) && fits;
         });
     }
     std::sort(added_.begin(), added_.end());
     return fits;
 }
 
-bool BroadPhase::is_gone(const Pair& pair, std::uint32_t body_count) const {
+bool BroadPhase::add_key(const Key& key) {
+    if (added_.size() == pair_capacity_) {
+        return false;
+    }
+    added_.push_back(key);
+    return true;
+}
+
+/// Adds the rows of two bodies whose bounds overlap; of a pair that is known, those whose parts
+/// have come near.
+bool BroadPhase::add_pair(const DynamicsTables& tables, BodyRow row, BodyRow other, bool is_known) {
+    const BodyRow a = std::min(row, other);
+    const BodyRow b = std::max(row, other);
+    if (!has_parts(tables.properties[a]) && !has_parts(tables.properties[b])) {
+        return is_known || add_key({a, b, 0});
+    }
+    const ShapeInstance shape_a = shape_of_row(tables.properties[a], shapes_, nullptr);
+    const ShapeInstance shape_b = shape_of_row(tables.properties[b], shapes_, nullptr);
+    const PartedPair pair(tables.motion[a], shape_a, tables.motion[b], shape_b);
+    const BodyRow surface = is_surface(shape_b.type) ? b : a;
+    const BodyRow moving = surface == b ? a : b;
+    // All rows of a surface that moved went.
+    is_known = is_known && !(pair.has_surface() && is_moved_[surface] != 0);
+    if (is_known && !pair.has_surface()) {
+        return true;
+    }
+    const Bounds before = stored_bounds(tables.motion[moving]);
+    bool fits = true;
+    pair.visit(bounds_[moving], [&](std::uint32_t child) {
+        if (!is_known || !pair.is_near(child, before)) {
+            fits = fits && add_key({a, b, child});
+        }
+    });
+    return fits;
+}
+
+/// Of two bodies one of which has new bounds that overlap the other's.
+bool BroadPhase::has_part_gone(const DynamicsTables& tables, const Pair& pair) const {
+    const ShapeInstance a = shape_of_row(tables.properties[pair.row_a], shapes_, nullptr);
+    const ShapeInstance b = shape_of_row(tables.properties[pair.row_b], shapes_, nullptr);
+    const PartedPair parts(tables.motion[pair.row_a], a, tables.motion[pair.row_b], b);
+    const BodyRow surface = is_surface(b.type) ? pair.row_b : pair.row_a;
+    const BodyRow moving = surface == pair.row_b ? pair.row_a : pair.row_b;
+    return parts.has_surface() &&
+           (is_moved_[surface] != 0 || !parts.is_near(pair.child, bounds_[moving]));
+}
+
+bool BroadPhase::is_gone(const DynamicsTables& tables, const Pair& pair) const {
+    const std::uint32_t body_count = tables.motion.count();
     if (pair.row_a >= body_count || pair.row_b >= body_count) {
         return true;
     }
-    return (is_moved_[pair.row_a] | is_moved_[pair.row_b]) != 0 &&
-           !overlaps(bounds_[pair.row_a], bounds_[pair.row_b]);
+    if ((is_moved_[pair.row_a] | is_moved_[pair.row_b]) == 0) {
+        return false;
+    }
+    return !overlaps(bounds_[pair.row_a], bounds_[pair.row_b]) ||
+           (pair.child != 0 && has_part_gone(tables, pair));
 }
 
 void BroadPhase::merge_new_pairs(const Table<Pair>& pairs, const std::vector<Key>& added) {
     const std::uint32_t kept = pairs.count();
     pairs.set_count(kept + static_cast<std::uint32_t>(added.size()));
+    const auto key_of = [](const Pair& pair) { return Key{pair.row_a, pair.row_b, pair.child}; };
     std::uint32_t from = kept;
     std::uint32_t to = pairs.count();
     for (std::size_t index = added.size(); index-- > 0;) {
         const Key& key = added[index];
-        while (from > 0 && Key{pairs[from - 1].row_a, pairs[from - 1].row_b} > key) {
+        while (from > 0 && key_of(pairs[from - 1]) > key) {
             pairs[--to] = pairs[--from];
         }
-        pairs[--to] = Pair{key.row_a, key.row_b, kNoIndex, 0, 0, {0, 0}};
+        pairs[--to] = Pair{key.row_a, key.row_b, key.child, kNoIndex, 0, 0, {0, 0}};
     }
 }
 
@@ -180,11 +228,7 @@ bool BroadPhase::derive_pairs(const DynamicsTables& tables) {
                 !may_meet(tables.properties[row], tables.properties[other])) {
                 return;
             }
-            if (added_.size() == pair_capacity_) {
-                fits = false;
-                return;
-            }
-            added_.push_back({std::min(row, other), std::max(row, other)});
+            fits = add_pair(tables, row, other, false) && fits;
         });
     }
     if (!fits) {
@@ -205,11 +249,10 @@ StepFault BroadPhase::run(const DynamicsTables& tables,
         return StepFault::none;
     }
     read_unmoved_bounds(tables);
-    const std::uint32_t body_count = tables.motion.count();
     const std::uint32_t pair_count = tables.pairs.count();
     std::uint32_t gone = 0;
     for (std::uint32_t index = 0; index < pair_count; ++index) {
-        gone += is_gone(tables.pairs[index], body_count) ? 1U : 0U;
+        gone += is_gone(tables, tables.pairs[index]) ? 1U : 0U;
     }
     if (!find_new_pairs(tables) || pair_count - gone + added_.size() > pair_capacity_) {
         return StepFault::pairs_full;
@@ -221,7 +264,7 @@ StepFault BroadPhase::run(const DynamicsTables& tables,
     std::uint32_t kept = 0;
     for (std::uint32_t index = 0; index < pair_count; ++index) {
         const Pair pair = tables.pairs[index];
-        if (!is_gone(pair, body_count)) {
+        if (!is_gone(tables, pair)) {
             tables.pairs[kept++] = pair;
         } else if (pair.point_count != 0 && pair.manifold < tables.manifolds.count()) {
             slots.free(tables.manifolds, pair.manifold);

@@ -16,7 +16,8 @@ namespace lockwind {
 /// fat bounds with at least one dynamic body.
 class BroadPhase {
 public:
-    explicit BroadPhase(const DynamicsSettings& settings);
+    /// `shapes` as of BodyFrames.
+    explicit BroadPhase(const DynamicsSettings& settings, const ShapeLibrary* shapes = nullptr);
 
     /// Appends touching pairs that drift apart to `changes`, in pair order. On a fault no table has
     /// changed.
@@ -37,6 +38,7 @@ private:
     struct Key {
         BodyRow row_a;
         BodyRow row_b;
+        std::uint32_t child;
         auto operator<=>(const Key&) const = default;
     };
 
@@ -46,12 +48,16 @@ private:
     void read_unmoved_bounds(const DynamicsTables& tables);
     Bounds fat_bounds(const Bounds& tight, const BodyMotion& motion, bool moves) const;
     bool find_new_pairs(const DynamicsTables& tables);
-    bool is_gone(const Pair& pair, std::uint32_t body_count) const;
+    bool add_pair(const DynamicsTables& tables, BodyRow row, BodyRow other, bool is_known);
+    bool add_key(const Key& key);
+    bool is_gone(const DynamicsTables& tables, const Pair& pair) const;
+    bool has_part_gone(const DynamicsTables& tables, const Pair& pair) const;
     static void merge_new_pairs(const Table<Pair>& pairs, const std::vector<Key>& added);
 
     Foresight foresight_;
     std::uint32_t tick_rate_;
     std::uint32_t pair_capacity_;
+    const ShapeLibrary* shapes_;
     std::vector<Bounds> bounds_; // fat, of this tick
     std::vector<BodyRow> moved_;
     std::vector<std::uint8_t> is_moved_;

@@ -10,17 +10,18 @@
 namespace lockwind {
 
 /// Two bodies whose fat bounds overlap, at least one dynamic: row of the derived section "pair",
-/// sorted by (row_a, row_b). The pairs follow from fat bounds and layers, what touches from the
-/// manifolds.
+/// sorted by (row_a, row_b, child). Bodies that are made of parts have a row for each two parts
+/// that may touch. The pairs follow from fat bounds and layers, what touches from the manifolds.
 struct Pair {
     BodyRow row_a; // row_a < row_b
     BodyRow row_b;
+    std::uint32_t child;      // which parts, see child_of(); 0 of bodies without
     std::uint32_t manifold;   // row of section "manifold"; kNoIndex unless touching
     std::uint8_t axis;        // that separated boxes or hulls last; touching, their manifold's
     std::uint8_t point_count; // 0 .. 4; 0 unless touching
     std::uint8_t zero[2];
 };
-static_assert(sizeof(Pair) == 16);
+static_assert(sizeof(Pair) == 20);
 
 /// The contact of a touching pair: row of section "manifold", found by Pair::manifold. A free slot
 /// is all zero bytes (a live one has points); the lowest free slot is taken first.
@@ -32,6 +33,7 @@ static_assert(sizeof(Pair) == 16);
 struct Manifold {
     BodyRow row_a; // of its pair
     BodyRow row_b;
+    std::uint32_t child;
     std::int32_t normal[3];        // Q2.30, world, from A to B
     std::int32_t tangent[3];       // Q2.30, world; the second one is normal x tangent
     std::int32_t centre_delta[3];  // Q9.22 m: from centre A to centre B
@@ -49,11 +51,12 @@ struct Manifold {
     std::uint32_t feature[4];
     std::int32_t anchor_a[4 * 3]; // Q9.22 m, world, from centre A; xyz of each point
 };
-static_assert(sizeof(Manifold) == 192);
+static_assert(sizeof(Manifold) == 196);
 
 inline constexpr std::array kPairFields{
     LOCKWIND_FIELD(Pair, row_a, 0, "", ""),
     LOCKWIND_FIELD(Pair, row_b, 0, "", ""),
+    LOCKWIND_FIELD(Pair, child, 0, "", ""),
     LOCKWIND_FIELD(Pair, manifold, 0, "", ""),
     LOCKWIND_FIELD(Pair, axis, 0, "", ""),
     LOCKWIND_FIELD(Pair, point_count, 0, "", ""),
@@ -63,6 +66,7 @@ inline constexpr std::array kPairFields{
 inline constexpr std::array kManifoldFields{
     LOCKWIND_FIELD(Manifold, row_a, 0, "", ""),
     LOCKWIND_FIELD(Manifold, row_b, 0, "", ""),
+    LOCKWIND_FIELD(Manifold, child, 0, "", ""),
     LOCKWIND_FIELD(Manifold, normal, 30, "", "xyz"),
     LOCKWIND_FIELD(Manifold, tangent, 30, "", "xyz"),
     LOCKWIND_FIELD(Manifold, centre_delta, 22, "m", "xyz"),

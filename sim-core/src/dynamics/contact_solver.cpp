@@ -286,8 +286,14 @@ void ContactSolver::list_hits(const DynamicsTables& tables, std::vector<ContactH
         return x.pair < y.pair;
     });
     for (const Impact& impact : impacts_) {
-        if (impact.load_max > kBounceSpeed) {
-            const Pair& pair = tables.pairs[impact.pair];
+        if (impact.load_max <= kBounceSpeed) {
+            continue;
+        }
+        const Pair& pair = tables.pairs[impact.pair];
+        if (!hits.empty() && hits.back().row_a == pair.row_a &&
+            hits.back().row_b == pair.row_b) { // another part of the same bodies
+            hits.back().impulse = std::max(hits.back().impulse, impact.load_max);
+        } else {
             hits.push_back({pair.row_a, pair.row_b, impact.load_max});
         }
     }

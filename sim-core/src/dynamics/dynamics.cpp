@@ -6,6 +6,7 @@
 #include "dynamics/contact_kernel_choice.h"
 #include "dynamics/manifold_slots.h"
 #include "dynamics/narrow_phase.h"
+#include "dynamics/pair_parts.h"
 #include "dynamics/sleep.h"
 #include "dynamics/solver.h"
 #include "dynamics/sweep.h"
@@ -13,6 +14,8 @@
 #include "lockwind/world_definition.h"
 
 #include <algorithm>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace lockwind {
@@ -22,8 +25,8 @@ namespace {
 /// Tells each pair its manifold. False where one has no pair, or not for itself.
 bool link_manifolds(const Table<Manifold>& manifolds, const Table<Pair>& pairs) {
     const auto is_before = [](const Pair& pair, const Manifold& manifold) {
-        return pair.row_a != manifold.row_a ? pair.row_a < manifold.row_a
-                                            : pair.row_b < manifold.row_b;
+        return std::tie(pair.row_a, pair.row_b, pair.child) <
+               std::tie(manifold.row_a, manifold.row_b, manifold.child);
     };
     const std::span<Pair> rows = pairs.rows();
     for (std::uint32_t index = 0; index < manifolds.count(); ++index) {
@@ -33,7 +36,7 @@ bool link_manifolds(const Table<Manifold>& manifolds, const Table<Pair>& pairs) 
         }
         const auto pair = std::lower_bound(rows.begin(), rows.end(), manifold, is_before);
         if (pair == rows.end() || pair->row_a != manifold.row_a || pair->row_b != manifold.row_b ||
-            pair->point_count != 0) {
+            pair->child != manifold.child || pair->point_count != 0) {
             return false;
         }
         pair->manifold = index;
@@ -43,12 +46,58 @@ bool link_manifolds(const Table<Manifold>& manifolds, const Table<Pair>& pairs) 
     return true;
 }
 
+/// How many rows of a pair of bodies touch.
+std::uint32_t touching_rows(const Table<Pair>& pairs, BodyRow row_a, BodyRow row_b) {
+    const std::span<Pair> rows = pairs.rows();
+    const auto first = std::lower_bound(
+        rows.begin(), rows.end(), std::pair{row_a, row_b}, [](const Pair& pair, const auto& key) {
+            return std::pair{pair.row_a, pair.row_b} < key;
+        });
+    std::uint32_t count = 0;
+    for (auto pair = first; pair != rows.end() && pair->row_a == row_a && pair->row_b == row_b;
+         ++pair) {
+        count += pair->point_count != 0 ? 1U : 0U;
+    }
+    return count;
+}
+
+/// One change for two bodies: their first row that touches begins, their last one that ceases to
+/// ends it. `changes` are in pair order.
+void unite_changes(const DynamicsTables& tables, std::vector<ContactChange>& changes) {
+    const std::uint32_t count = tables.properties.count();
+    const auto have_parts = [&](const ContactChange& change) {
+        // Damaged rows must not lead outside.
+        return change.row_a < count && change.row_b < count &&
+               (has_parts(tables.properties[change.row_a]) ||
+                has_parts(tables.properties[change.row_b]));
+    };
+    std::size_t kept = 0;
+    for (std::size_t first = 0, end = 0; first < changes.size(); first = end) {
+        ContactChange change = changes[first];
+        std::int64_t begun = 0; // rows, less those that ended
+        while (end < changes.size() && changes[end].row_a == change.row_a &&
+               changes[end].row_b == change.row_b) {
+            begun += changes[end].begin ? 1 : -1;
+            ++end;
+        }
+        if (have_parts(change)) {
+            const std::int64_t after = touching_rows(tables.pairs, change.row_a, change.row_b);
+            change.begin = after != 0;
+            if ((after != 0) == (after - begun != 0)) {
+                continue;
+            }
+        }
+        changes[kept++] = change;
+    }
+    changes.resize(kept);
+}
+
 } // namespace
 
 struct Dynamics::Impl {
     Impl(const DynamicsSettings& settings, const ShapeLibrary* shapes, Simd simd)
         : activity(settings), frames(settings.body_capacity, shapes),
-          slots(settings.manifold_capacity), broad(settings), narrow(settings),
+          slots(settings.manifold_capacity), broad(settings, shapes), narrow(settings),
           solver(settings, contact_kernels(simd)), sweep(settings), sleep(settings) {
         // A pair that goes and one that comes both change in a tick.
         changes.reserve(2 * std::size_t{settings.pair_capacity});
@@ -114,6 +163,7 @@ StepFault Dynamics::narrow_phase(const DynamicsTables& tables) {
               [](const ContactChange& x, const ContactChange& y) {
                   return x.row_a != y.row_a ? x.row_a < y.row_a : x.row_b < y.row_b;
               });
+    unite_changes(tables, impl_->changes);
     return fault;
 }
 

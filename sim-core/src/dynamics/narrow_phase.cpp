@@ -1,9 +1,11 @@
 #include "dynamics/narrow_phase.h"
 
+#include "dynamics/pair_parts.h"
 #include "dynamics/pairing.h"
 #include "dynamics/solver_format.h"
 #include "geometry/bounds.h"
 #include "geometry/collide.h"
+#include "geometry/compound.h"
 #include "geometry/rotation.h"
 
 #include "lockwind/integer.h"
@@ -11,6 +13,7 @@
 #include "lockwind/world_definition.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace lockwind {
 
@@ -20,16 +23,19 @@ constexpr auto kFixed = static_cast<std::uint8_t>(BodyMode::fixed);
 constexpr std::int64_t kDriftMax = 209715; // 50 mm, Q9.22: a manifold bears this much sliding
 
 bool is_flat(ShapeType type) {
-    return type == ShapeType::box || type == ShapeType::plane || type == ShapeType::hull;
+    return type == ShapeType::box || type == ShapeType::plane || type == ShapeType::hull ||
+           is_surface(type);
 }
 
-void cross_unit(const std::int32_t a[3], const std::int32_t b[3], std::int32_t out[3]) {
-    for (int axis = 0; axis < 3; ++axis) {
-        const int next = (axis + 1) % 3;
-        const int last = (axis + 2) % 3;
-        out[axis] = round_unit(static_cast<std::int64_t>(a[next]) * b[last] -
-                               static_cast<std::int64_t>(a[last]) * b[next]);
+/// Whether a body bears more motion between two looks: no part of it is round.
+bool is_flat(const ShapeInstance& shape) {
+    if (shape.type != ShapeType::compound) {
+        return is_flat(shape.type);
     }
+    const CompoundShape* children = shape.compound->children;
+    return std::all_of(children,
+                       children + shape.compound->child_count,
+                       [](const CompoundShape& child) { return is_flat(child.type); });
 }
 
 /// The orientation that a frame's rotation stands for.
@@ -65,6 +71,117 @@ private:
     bool turns_;
 };
 
+/// A body's part, as a shape of its own.
+class BodyPart {
+public:
+    BodyPart(const ShapeInstance& body, std::uint32_t part)
+        : body_(body), part_(part), shape_(body) {
+        if (body.type == ShapeType::compound) {
+            child_.emplace(body, part);
+            shape_ = child_->shape;
+        } else {
+            shape_.part = part;
+        }
+    }
+    const ShapeInstance& shape() const { return shape_; }
+    /// Q9.22 m, world axes, from the body's centre.
+    const std::int32_t* offset() const {
+        static constexpr std::int32_t kNone[3] = {0, 0, 0};
+        return child_ ? child_->offset : kNone;
+    }
+    /// A point of the part's frame in the body's.
+    void to_body(std::int32_t point[3]) const {
+        if (child_) {
+            std::int32_t world[3];
+            rotate(shape_.rotation, point, world);
+            for (int axis = 0; axis < 3; ++axis) {
+                world[axis] =
+                    raw_saturate<std::int32_t>(std::int64_t{world[axis]} + child_->offset[axis]);
+            }
+            inverse_rotate(body_.rotation, world, point);
+        }
+    }
+
+    /// Whether a contact is another child's to tell: what slides over the seam between two must
+    /// not be stopped by it. The point (the body's frame) lies `lift` (Q9.22 m) off the surface
+    /// along the outward normal (Q2.30, world).
+    bool is_at_seam(const std::int32_t point[3],
+                    const std::int32_t outwards[3],
+                    std::int32_t lift) const {
+        if (!child_) {
+            return false;
+        }
+        std::int32_t normal[3];
+        std::int32_t surface[3];
+        inverse_rotate(body_.rotation, outwards, normal);
+        for (int axis = 0; axis < 3; ++axis) {
+            surface[axis] = point[axis] - scale(lift, normal[axis]);
+        }
+        return lockwind::is_at_seam(*body_.compound, part_, surface, normal);
+    }
+
+private:
+    const ShapeInstance& body_;
+    std::uint32_t part_;
+    std::optional<CompoundPart> child_;
+    ShapeInstance shape_;
+};
+
+/// Damaged rows must not lead outside.
+bool has_part(const ShapeInstance& shape, std::uint32_t part) {
+    return is_surface(shape.type) ? part < shape.surface->triangle_count()
+                                  : part < child_count(shape);
+}
+
+/// Whether the triangle's bounds, in its own frame, and the other part's are apart.
+bool is_apart_from_triangle(const ShapeInstance& surface,
+                            const ShapeInstance& other,
+                            const std::int32_t delta[3]) {
+    std::int32_t half_extents[3];
+    std::int32_t centre[3];
+    bounds_half_extents(other, half_extents);
+    inverse_rotate(surface.rotation, delta, centre);
+    for (int axis = 0; axis < 3; ++axis) {
+        std::int64_t reach = kSpeculativeMargin;
+        for (int row = 0; row < 3; ++row) {
+            reach += scale(half_extents[row], magnitude(surface.rotation[3 * row + axis])) + 1;
+        }
+        std::int32_t places[3];
+        for (std::uint32_t corner = 0; corner < 3; ++corner) {
+            places[corner] = surface.surface->corner(surface.part, corner)[axis];
+        }
+        const auto [low, high] = std::minmax({places[0], places[1], places[2]});
+        if (centre[axis] < low - reach || centre[axis] > high + reach) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool are_parts_apart(const ShapeInstance& a, const ShapeInstance& b, const std::int32_t delta[3]) {
+    if (!is_bounded(a.type) || !is_bounded(b.type)) {
+        return false;
+    }
+    if (is_surface(b.type)) {
+        const std::int32_t back[3] = {-delta[0], -delta[1], -delta[2]};
+        return is_apart_from_triangle(b, a, back);
+    }
+    if (is_surface(a.type)) {
+        return is_apart_from_triangle(a, b, delta);
+    }
+    std::int32_t extents[2][3];
+    bounds_half_extents(a, extents[0]);
+    bounds_half_extents(b, extents[1]);
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::int64_t reach =
+            std::int64_t{extents[0][axis]} + extents[1][axis] + kSpeculativeMargin;
+        if (magnitude(std::int64_t{delta[axis]}) > reach) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /// One look at a pair.
 class PairLook {
 public:
@@ -90,6 +207,10 @@ private:
                      std::int32_t reach,
                      std::int32_t delta[3],
                      ManifoldGeometry& geometry) const;
+    void collide_parts(const Pair& pair,
+                       const std::int32_t delta[3],
+                       const ManifoldCache& cache,
+                       ManifoldGeometry& geometry) const;
     void write_manifold(const Pair& pair,
                         const std::int32_t delta[3],
                         const ManifoldGeometry& geometry,
@@ -111,7 +232,7 @@ bool is_touching(const Pair& pair) {
 bool PairLook::is_still(const Pair& pair) const {
     const BodyFrame& frame_a = frames_[pair.row_a];
     const BodyFrame& frame_b = frames_[pair.row_b];
-    if (!is_touching(pair) || !is_flat(frame_a.shape.type) || !is_flat(frame_b.shape.type)) {
+    if (!is_touching(pair) || !is_flat(frame_a.shape) || !is_flat(frame_b.shape)) {
         return false;
     }
     const Manifold& manifold = tables_.manifolds[pair.manifold];
@@ -179,8 +300,8 @@ void turn_friction(Manifold& manifold,
                    const std::int32_t tangent[3]) {
     std::int32_t old_second[3];
     std::int32_t new_second[3];
-    cross_unit(manifold.normal, manifold.tangent, old_second);
-    cross_unit(normal, tangent, new_second);
+    cross_units(manifold.normal, manifold.tangent, old_second);
+    cross_units(normal, tangent, new_second);
     const std::int64_t first = manifold.friction_impulse[0];
     const std::int64_t second = manifold.friction_impulse[1];
     const auto turned = [&](const std::int32_t axis[3]) {
@@ -211,6 +332,7 @@ void PairLook::write_manifold(const Pair& pair,
     manifold = Manifold{};
     manifold.row_a = pair.row_a;
     manifold.row_b = pair.row_b;
+    manifold.child = pair.child;
     std::copy(geometry.normal, geometry.normal + 3, manifold.normal);
     std::copy(tangent, tangent + 3, manifold.tangent);
     std::copy(delta, delta + 3, manifold.centre_delta);
@@ -239,6 +361,45 @@ void PairLook::write_manifold(const Pair& pair,
     }
 }
 
+void PairLook::collide_parts(const Pair& pair,
+                             const std::int32_t delta[3],
+                             const ManifoldCache& cache,
+                             ManifoldGeometry& geometry) const {
+    const ShapeInstance& shape_a = frames_[pair.row_a].shape;
+    const ShapeInstance& shape_b = frames_[pair.row_b].shape;
+    geometry.point_count = 0;
+    geometry.axis = 0;
+    const PartIndices parts = parts_of(pair.child, is_surface(shape_b.type));
+    if (!has_part(shape_a, parts.a) || !has_part(shape_b, parts.b)) {
+        return;
+    }
+    const BodyPart a(shape_a, parts.a);
+    const BodyPart b(shape_b, parts.b);
+    std::int32_t between[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        between[axis] = raw_saturate<std::int32_t>(std::int64_t{delta[axis]} + b.offset()[axis] -
+                                                   a.offset()[axis]);
+    }
+    if (are_parts_apart(a.shape(), b.shape(), between)) {
+        return;
+    }
+    collide(a.shape(), b.shape(), between, cache, geometry);
+    const std::int32_t* normal = geometry.normal;
+    const std::int32_t back[3] = {-normal[0], -normal[1], -normal[2]};
+    std::uint32_t kept = 0;
+    for (std::uint32_t index = 0; index < geometry.point_count; ++index) {
+        ManifoldPoint& point = geometry.points[index];
+        a.to_body(point.local_a);
+        b.to_body(point.local_b);
+        const std::int32_t lift = point.separation >> 1;
+        if (!a.is_at_seam(point.local_a, normal, lift) &&
+            !b.is_at_seam(point.local_b, back, lift)) {
+            geometry.points[kept++] = point;
+        }
+    }
+    geometry.point_count = kept;
+}
+
 /// Where the two are; point_count 0 where they do not touch.
 void PairLook::touch(const Pair& pair,
                      const std::int32_t delta[3],
@@ -248,7 +409,11 @@ void PairLook::touch(const Pair& pair,
     cache.touching = is_touching(pair);
     cache.axis_separation =
         is_touching(pair) ? tables_.manifolds[pair.manifold].axis_separation : 0;
-    collide(frames_[pair.row_a].shape, frames_[pair.row_b].shape, delta, cache, geometry);
+    if (pair.child == 0) {
+        collide(frames_[pair.row_a].shape, frames_[pair.row_b].shape, delta, cache, geometry);
+    } else {
+        collide_parts(pair, delta, cache, geometry);
+    }
 }
 
 /// Whether the two would meet in this tick if nothing else happened; `delta` is then from where.
@@ -256,7 +421,8 @@ bool PairLook::meets_ahead(const Pair& pair,
                            std::int32_t reach,
                            std::int32_t delta[3],
                            ManifoldGeometry& geometry) const {
-    if (reach == 0 || is_sensing(tables_.properties[pair.row_a], tables_.properties[pair.row_b])) {
+    if (reach == 0 || pair.child != 0 || // parts are swept
+        is_sensing(tables_.properties[pair.row_a], tables_.properties[pair.row_b])) {
         return false;
     }
     Foreseen ahead;
@@ -349,7 +515,7 @@ void NarrowPhase::read_gates(const DynamicsTables& tables,
                              std::span<const BodyRow> rows) {
     for (const BodyRow row : rows) {
         gates_[row] = {tables.sleep[row].moved,
-                       is_flat(frames[row].shape.type),
+                       is_flat(frames[row].shape),
                        foresight_.reach(tables.motion[row], tables.properties[row])};
     }
 }

@@ -1,7 +1,9 @@
 #include "dynamics/shape_sweep.h"
 
 #include "dynamics/turn.h"
+#include "geometry/compound.h"
 #include "geometry/convex_core.h"
+#include "geometry/fixed_geometry.h"
 #include "geometry/pair_kernels.h"
 #include "geometry/rotation.h"
 #include "geometry/shape_distance.h"
@@ -41,10 +43,14 @@ public:
             rotation_matrix(orientation, rotation);
             ShapeInstance shape = path_.shape;
             shape.rotation = rotation;
-            shrink(shape);
-            make_core(shape, core_);
-            if (shape.type == ShapeType::hull) {
-                shrink_core();
+            if (is_surface(shape.type)) {
+                make_triangle_core(shape, shape.part, core_);
+            } else if (shape.type == ShapeType::compound) {
+                const CompoundPart part(shape, shape.part);
+                make_shrunk_core(part.shape);
+                move_core(part.offset);
+            } else {
+                make_shrunk_core(shape);
             }
         }
     }
@@ -71,6 +77,22 @@ public:
     }
 
 private:
+    void make_shrunk_core(ShapeInstance shape) {
+        shrink(shape);
+        make_core(shape, core_);
+        if (shape.type == ShapeType::hull) {
+            shrink_core();
+        }
+    }
+    /// From a child's centre to its body's.
+    void move_core(const std::int32_t offset[3]) {
+        for (std::uint32_t point = 0; point < core_.count; ++point) {
+            for (int axis = 0; axis < 3; ++axis) {
+                core_.points[point][axis] += offset[axis];
+            }
+        }
+        core_.reach += static_cast<std::int32_t>(floor_sqrt(squared_length(offset))) + 1;
+    }
     void shrink(ShapeInstance& shape) const {
         const std::int32_t shortest = girth_of(shape).shortest;
         const std::int32_t depth = shortest - (shortest >> path_.level);

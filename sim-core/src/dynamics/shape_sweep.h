@@ -20,7 +20,7 @@ inline constexpr std::int64_t kSweepTimeEnd = std::int64_t{1} << kSweepTimeFract
 
 /// A shape's way from one pose to another: straight, and at a constant angular velocity.
 struct ShapePath {
-    ShapeInstance shape;         // its rotation is not read
+    ShapeInstance shape;         // its rotation is not read; of a body with parts its part alone
     std::int64_t start[3];       // Q31.32 m, world
     std::int64_t way[3];         // Q31.32 m
     std::int32_t orientation[4]; // Q2.30 x y z w, at the start

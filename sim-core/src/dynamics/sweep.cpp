@@ -1,8 +1,10 @@
 #include "dynamics/sweep.h"
 
+#include "dynamics/pair_parts.h"
 #include "dynamics/pairing.h"
 #include "dynamics/solver_format.h"
 #include "dynamics/turn.h"
+#include "geometry/compound.h"
 #include "geometry/pair_kernels.h"
 
 #include "lockwind/integer.h"
@@ -63,6 +65,31 @@ void turn_between(const std::int32_t from[4],
     for (int index = 0; index < 3; ++index) {
         turn[index] = (parts[index] * angle).raw() >> 2;
     }
+}
+
+/// Calls visit(path) with the path of each part; of a surface, which does not move, of each
+/// triangle that lies near.
+template <class Visit>
+void for_each_part(const ShapePath& path, const Bounds& near, Visit&& visit) {
+    if (!is_composite(path.shape.type)) {
+        visit(path);
+        return;
+    }
+    ShapePath of_part = path;
+    const auto visit_part = [&](std::uint32_t part) {
+        of_part.shape.part = part;
+        visit(of_part);
+    };
+    if (path.shape.type == ShapeType::compound) {
+        for (std::uint32_t child = 0; child < path.shape.compound->child_count; ++child) {
+            visit_part(child);
+        }
+        return;
+    }
+    BodyMotion place{};
+    std::copy(path.start, path.start + 3, place.position);
+    std::copy(path.orientation, path.orientation + 4, place.orientation);
+    path.shape.surface->tree().visit(OverlapProbe(bounds_in_frame(near, place)), visit_part);
 }
 
 } // namespace
@@ -156,12 +183,48 @@ void Sweep::shorten(BodyRow row, std::int64_t time) {
     ends_[row] = std::min(ends_[row], time);
 }
 
+Bounds Sweep::bounds_of(const Reach& reach) {
+    Bounds bounds{};
+    for (int axis = 0; axis < 3; ++axis) {
+        bounds.low[axis] =
+            raw_saturate<std::int32_t>((reach.low[axis] >> (32 - kBoundsFraction)) - 1);
+        bounds.high[axis] =
+            raw_saturate<std::int32_t>((reach.high[axis] >> (32 - kBoundsFraction)) + 1);
+    }
+    return bounds;
+}
+
+/// All parts of the one with all of the other that lie `near` its way. The first touch counts; one
+/// that is near at the start counts for the whole body, so that what slides over a surface is not
+/// stopped by its next triangle.
+SweepResult Sweep::meet(const ShapePath& own,
+                        const ShapePath& its,
+                        const Bounds& near,
+                        std::int64_t& time) const {
+    SweepResult result = SweepResult::apart;
+    for_each_part(own, near, [&](const ShapePath& own_part) {
+        for_each_part(its, near, [&](const ShapePath& its_part) {
+            if (result == SweepResult::near_at_start) {
+                return;
+            }
+            std::int64_t found = 0;
+            const SweepResult part = shape_sweep(own_part, its_part, found);
+            if (part == SweepResult::met) {
+                time = result == SweepResult::met ? std::min(time, found) : found;
+            }
+            result = part == SweepResult::apart ? result : part;
+        });
+    });
+    return result;
+}
+
 void Sweep::sweep(const DynamicsTables& tables, BodyFrames& frames, BodyRow row) {
     const BodyProperties& body = tables.properties[row];
     const bool meets_all = body.collision_mode == kContinuous;
     const Reach reach = reach_of(tables, row);
     ShapePath path = path_of(tables, frames, row);
     path.level = starts_[row].level;
+    const Bounds near = bounds_of(reach);
     for (BodyRow other = 0; other < tables.motion.count(); ++other) {
         const BodyProperties& its = tables.properties[other];
         const bool moves = its.mode == kDynamic && moved_[other] != 0;
@@ -187,10 +250,10 @@ void Sweep::sweep(const DynamicsTables& tables, BodyFrames& frames, BodyRow row)
         const ShapePath its_path = path_of(tables, frames, other);
         std::int64_t time = 0;
         ShapePath own_path = path;
-        SweepResult result = shape_sweep(own_path, its_path, time);
+        SweepResult result = meet(own_path, its_path, near, time);
         while (result == SweepResult::near_at_start && own_path.level < kSweepLevelMost) {
             ++own_path.level;
-            result = shape_sweep(own_path, its_path, time);
+            result = meet(own_path, its_path, near, time);
         }
         if (result == SweepResult::met) {
             shorten(row, time);

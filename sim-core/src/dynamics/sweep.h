@@ -45,7 +45,10 @@ private:
     bool is_fast(const DynamicsTables& tables, const BodyFrames& frames, BodyRow row) const;
     Reach reach_of(const DynamicsTables& tables, BodyRow row) const;
     ShapePath path_of(const DynamicsTables& tables, const BodyFrames& frames, BodyRow row) const;
+    static Bounds bounds_of(const Reach& reach);
     void sweep(const DynamicsTables& tables, BodyFrames& frames, BodyRow row);
+    SweepResult
+    meet(const ShapePath& own, const ShapePath& its, const Bounds& near, std::int64_t& time) const;
     void end_ways(const DynamicsTables& tables, const BodyFrames& frames);
     void shorten(BodyRow row, std::int64_t time);
 

@@ -2,6 +2,7 @@
 
 #include "geometry/convex_core.h"
 #include "geometry/fixed_geometry.h"
+#include "geometry/polytope.h"
 #include "geometry/principal_axes.h"
 #include "geometry/rotation.h"
 
@@ -128,8 +129,10 @@ std::optional<Error> CompoundMaker::check(std::size_t index) const {
     if (child.density < kCompoundDensityMin || child.density > kCompoundDensityMax) {
         wrong = "has a density out of range; give 0.001 .. 1000 times the body's";
     }
-    return wrong.empty() ? std::nullopt
-                         : std::optional<Error>("child " + std::to_string(index) + " " + wrong);
+    if (wrong.empty()) {
+        return std::nullopt;
+    }
+    return Error{"child " + std::to_string(index) + " " + wrong};
 }
 
 /// Fills a child in the given frame.
@@ -329,6 +332,67 @@ CompoundPart::CompoundPart(const ShapeInstance& compound, std::uint32_t index) {
         multiply(compound.rotation, child.rotation, rotation);
     }
     shape = {child.type, {child.size[0], child.size[1], child.size[2]}, rotation, child.hull};
+}
+
+namespace {
+
+/// Q9.22 m, from a point of the compound's frame; 0 inside.
+std::int64_t distance_to(const CompoundShape& child, const std::int32_t point[3]) {
+    std::int32_t from_centre[3];
+    std::int32_t local[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        from_centre[axis] =
+            raw_saturate<std::int32_t>(std::int64_t{point[axis]} - child.position[axis]);
+    }
+    inverse_rotate(child.rotation, from_centre, local);
+    std::int32_t gap[3] = {local[0], local[1], local[2]};
+    if (child.type == ShapeType::hull) {
+        const ShapeInstance shape{ShapeType::hull, {0, 0, 0}, kIdentityRotation, child.hull};
+        BoxFeatures unused;
+        NearestPoint nearest{};
+        if (!nearest_point(polytope_of(shape, unused), local, nearest)) {
+            return 0;
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            gap[axis] = raw_saturate<std::int32_t>(std::int64_t{local[axis]} - nearest.place[axis]);
+        }
+    } else if (child.type == ShapeType::box) {
+        for (int axis = 0; axis < 3; ++axis) {
+            gap[axis] -= clamped(gap[axis], -child.size[axis], child.size[axis]);
+        }
+    } else if (child.type == ShapeType::capsule) {
+        gap[1] -= clamped(gap[1], -child.size[1], child.size[1]);
+    }
+    const bool is_round = child.type == ShapeType::sphere || child.type == ShapeType::capsule;
+    const auto length = static_cast<std::int64_t>(floor_sqrt(squared_length(gap)));
+    return std::max<std::int64_t>(length - (is_round ? child.size[0] : 0), 0);
+}
+
+} // namespace
+
+bool is_at_seam(const Compound& compound,
+                std::uint32_t child,
+                const std::int32_t point[3],
+                const std::int32_t normal[3]) {
+    // A quarter of a metre: long enough to tell normals 0.6 degrees apart by their distances.
+    constexpr std::int32_t kWay = 1 << (kLengthFraction - 2);
+    constexpr std::int32_t kSlack = kWay >> 14;
+    std::int32_t beyond[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        beyond[axis] =
+            raw_saturate<std::int32_t>(std::int64_t{point[axis]} + scale(kWay, normal[axis]));
+    }
+    for (std::uint32_t other = 0; other < compound.child_count; ++other) {
+        if (other == child) {
+            continue;
+        }
+        const std::int64_t before = distance_to(compound.children[other], point);
+        if (before <= kLinearSlop &&
+            distance_to(compound.children[other], beyond) < before + kWay - kSlack) {
+            return true;
+        }
+    }
+    return false;
 }
 
 Result<Compound> make_compound(const CompoundDefinition& definition, std::span<const Hull> hulls) {

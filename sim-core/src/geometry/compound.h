@@ -48,6 +48,15 @@ struct CompoundPart {
     CompoundPart& operator=(const CompoundPart&) = delete;
 };
 
+/// Whether a contact of a child with something outside lies at a seam: its place on the child's
+/// surface is on another child too (within kLinearSlop), which a way along the normal leads less
+/// straight away from than from this one. It is then the other's to tell. Point (Q9.22 m) and
+/// outward normal (Q2.30) in the compound's own frame.
+bool is_at_seam(const Compound& compound,
+                std::uint32_t child,
+                const std::int32_t point[3],
+                const std::int32_t normal[3]);
+
 /// Mass, centre and axes by the parallel axis theorem, rounded once a sum. `hulls` must outlive the
 /// compound. An Error says what is wrong, and reads after the compound's name.
 Result<Compound> make_compound(const CompoundDefinition& definition, std::span<const Hull> hulls);

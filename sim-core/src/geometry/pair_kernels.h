@@ -1,6 +1,7 @@
 #pragma once
 
 #include "geometry/collide.h"
+#include "geometry/compound.h"
 #include "geometry/fixed_geometry.h"
 #include "geometry/hull.h"
 #include "geometry/rotation.h"
@@ -90,6 +91,21 @@ struct Girth {
     std::int32_t shortest;
 };
 
+inline Girth girth_of(const ShapeInstance& shape);
+
+/// Of the thinnest child.
+inline Girth least_girth(const Compound& compound) {
+    constexpr std::int32_t kEndless = std::numeric_limits<std::int32_t>::max();
+    Girth least{kEndless, kEndless};
+    for (std::uint32_t index = 0; index < compound.child_count; ++index) {
+        const CompoundShape& child = compound.children[index];
+        const Girth girth = girth_of(
+            {child.type, {child.size[0], child.size[1], child.size[2]}, nullptr, child.hull});
+        least.shortest = std::min(least.shortest, girth.shortest);
+    }
+    return least;
+}
+
 inline Girth girth_of(const ShapeInstance& shape) {
     constexpr std::int32_t kEndless = std::numeric_limits<std::int32_t>::max();
     const std::int32_t* size = shape.size;
@@ -102,8 +118,9 @@ inline Girth girth_of(const ShapeInstance& shape) {
         return {std::max({size[0], size[1], size[2]}), std::min({size[0], size[1], size[2]})};
     case ShapeType::hull:
         return {shape.hull->width_most, shape.hull->width_least};
-    case ShapeType::plane:
     case ShapeType::compound:
+        return least_girth(*shape.compound);
+    case ShapeType::plane:
     case ShapeType::height_field:
     case ShapeType::mesh:
         break;

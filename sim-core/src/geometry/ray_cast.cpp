@@ -322,7 +322,22 @@ bool cast_surface(const LocalRay& ray, const Surface& surface, LocalHit& nearest
     return found;
 }
 
-bool cast_local(const ShapeInstance& shape, const LocalRay& ray, LocalHit& hit);
+bool cast_convex(const ShapeInstance& shape, const LocalRay& ray, LocalHit& hit) {
+    switch (shape.type) {
+    case ShapeType::sphere:
+        return cast_sphere(ray, shape.size[0], hit);
+    case ShapeType::capsule:
+        return cast_capsule(ray, shape.size, hit);
+    case ShapeType::box:
+        return cast_box(ray, shape.size, hit);
+    case ShapeType::plane:
+        return cast_plane(ray, hit);
+    case ShapeType::hull:
+        return cast_hull(ray, *shape.hull, hit);
+    default:
+        return false;
+    }
+}
 
 bool cast_compound(const LocalRay& ray, const Compound& compound, LocalHit& nearest) {
     bool found = false;
@@ -338,7 +353,7 @@ bool cast_compound(const LocalRay& ray, const Compound& compound, LocalHit& near
         inverse_rotate(child.rotation, start, turned.start);
         inverse_rotate(child.rotation, ray.way, turned.way);
         LocalHit hit{};
-        if (cast_local(shape, turned, hit)) {
+        if (cast_convex(shape, turned, hit)) {
             hit.part = index;
             if (!found || is_sooner(hit, nearest)) {
                 found = true;
@@ -353,23 +368,14 @@ bool cast_compound(const LocalRay& ray, const Compound& compound, LocalHit& near
 
 bool cast_local(const ShapeInstance& shape, const LocalRay& ray, LocalHit& hit) {
     switch (shape.type) {
-    case ShapeType::sphere:
-        return cast_sphere(ray, shape.size[0], hit);
-    case ShapeType::capsule:
-        return cast_capsule(ray, shape.size, hit);
-    case ShapeType::box:
-        return cast_box(ray, shape.size, hit);
-    case ShapeType::plane:
-        return cast_plane(ray, hit);
-    case ShapeType::hull:
-        return cast_hull(ray, *shape.hull, hit);
     case ShapeType::compound:
         return cast_compound(ray, *shape.compound, hit);
     case ShapeType::height_field:
     case ShapeType::mesh:
         return cast_surface(ray, *shape.surface, hit);
+    default:
+        return cast_convex(shape, ray, hit);
     }
-    return false;
 }
 
 bool in_range(const std::int64_t point[3]) {

@@ -28,8 +28,8 @@ void turned_extents(const std::int32_t* rotation, const ConvexCore& core, std::i
 /// The nearest of several parts.
 struct NearestPart {
     ShapeDistance& out;
-    std::uint32_t& part;
     std::int64_t limit;
+    std::uint32_t part = 0;
     bool found = false;
 
     void offer(const ShapeDistance& distance, std::uint32_t index, const std::int32_t offset[3]) {
@@ -90,7 +90,7 @@ void distance_to_surface(const ConvexCore& a,
 /// The first of several parts.
 struct FirstPart {
     ConvexCastHit& hit;
-    std::uint32_t& part;
+    std::uint32_t part = 0;
     bool found = false;
 
     bool offer(const ConvexCastHit& other, std::uint32_t index) {
@@ -162,10 +162,8 @@ bool distance_to_shape(const ConvexCore& a,
                        const std::int64_t delta[3],
                        const ShapeInstance& b,
                        std::int64_t limit,
-                       ShapeDistance& out,
-                       std::uint32_t& part) {
-    part = 0;
-    NearestPart nearest{out, part, limit};
+                       ShapeDistance& out) {
+    NearestPart nearest{out, limit};
     if (b.type == ShapeType::compound) {
         distance_to_compound(a, delta, b, nearest);
     } else if (is_surface(b.type)) {
@@ -186,10 +184,8 @@ bool cast_at_shape(const ConvexCore& shape,
                    const std::int64_t way[3],
                    const ShapeInstance& body,
                    const std::int64_t centre[3],
-                   ConvexCastHit& hit,
-                   std::uint32_t& part) {
-    part = 0;
-    FirstPart first{hit, part};
+                   ConvexCastHit& hit) {
+    FirstPart first{hit};
     if (body.type == ShapeType::compound) {
         cast_at_compound(shape, start, way, body, centre, first);
         return first.found;

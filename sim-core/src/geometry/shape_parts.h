@@ -12,14 +12,13 @@ namespace lockwind {
 // their parts. A surface has no inside and no thickness; a shape cast meets it from its front
 // alone, as contacts do, distances and overlaps look at both sides.
 
-/// As of shape_distance, with B a shape of any type. `part` is the nearest child or triangle, the
-/// lowest of several at one distance. False where nothing is within `limit` (Q31.32 m).
+/// As of shape_distance, with B a shape of any type: its nearest child or triangle, the lowest of
+/// several at one distance. False where nothing is within `limit` (Q31.32 m).
 bool distance_to_shape(const ConvexCore& a,
                        const std::int64_t delta[3],
                        const ShapeInstance& b,
                        std::int64_t limit,
-                       ShapeDistance& out,
-                       std::uint32_t& part);
+                       ShapeDistance& out);
 
 /// As of shape_cast, with a body of any type.
 bool cast_at_shape(const ConvexCore& shape,
@@ -27,7 +26,6 @@ bool cast_at_shape(const ConvexCore& shape,
                    const std::int64_t way[3],
                    const ShapeInstance& body,
                    const std::int64_t centre[3],
-                   ConvexCastHit& hit,
-                   std::uint32_t& part);
+                   ConvexCastHit& hit);
 
 } // namespace lockwind

@@ -27,6 +27,19 @@ std::int32_t stored(Real coordinate) {
 
 } // namespace
 
+Bounds Surface::triangle_bounds(std::uint32_t index) const {
+    constexpr int kCoarser = kLengthFraction - kBoundsFraction;
+    Bounds bounds{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::int32_t places[3] = {
+            corner(index, 0)[axis], corner(index, 1)[axis], corner(index, 2)[axis]};
+        const auto [low, high] = std::minmax({places[0], places[1], places[2]});
+        bounds.low[axis] = (low >> kCoarser) - 1;
+        bounds.high[axis] = (high >> kCoarser) + 1;
+    }
+    return bounds;
+}
+
 Result<Surface> make_mesh(const MeshDefinition& definition) {
     const std::size_t vertex_count = definition.vertices.size();
     const std::size_t index_count = definition.indices.size();

@@ -39,8 +39,10 @@ public:
     /// Of the triangles around a vertex, weighted by their angles there: which side of them a point
     /// lies on whose nearest place is the vertex (Baerentzen and Aanaes 2005). Q2.30.
     const std::int32_t* outwards(std::uint32_t vertex) const { return outwards_[vertex].data(); }
-    /// Of the triangles' bounds, Q15.16 m, rounded outwards.
+    /// Of triangle_bounds().
     const BoundsTree& tree() const { return tree_; }
+    /// Q15.16 m, rounded outwards.
+    Bounds triangle_bounds(std::uint32_t index) const;
 
     /// Where the own frame's origin lies in the given one, Q9.22 m.
     const std::int32_t* centre() const { return centre_.data(); }

@@ -250,19 +250,10 @@ void SurfaceMaker::make_outwards() {
 }
 
 void SurfaceMaker::make_tree() {
-    constexpr int kCoarser = kLengthFraction - kBoundsFraction;
     std::vector<Bounds> bounds;
     bounds.reserve(surface_.triangles_.size());
-    for (const SurfaceTriangle& triangle : surface_.triangles_) {
-        Bounds around = kUnbounded;
-        for (int axis = 0; axis < 3; ++axis) {
-            const auto place = [&](int corner) {
-                return surface_.place(triangle.corners[corner])[axis];
-            };
-            around.low[axis] = (std::min({place(0), place(1), place(2)}) >> kCoarser) - 1;
-            around.high[axis] = (std::max({place(0), place(1), place(2)}) >> kCoarser) + 1;
-        }
-        bounds.push_back(around);
+    for (std::uint32_t index = 0; index < surface_.triangle_count(); ++index) {
+        bounds.push_back(surface_.triangle_bounds(index));
     }
     surface_.tree_ = BoundsTree(static_cast<std::uint32_t>(bounds.size()));
     surface_.tree_.build(bounds);

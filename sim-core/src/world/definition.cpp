@@ -87,6 +87,21 @@ std::uint32_t plane_count(const WorldDefinition& definition) {
         std::count_if(definition.bodies.begin(), definition.bodies.end(), is_plane));
 }
 
+/// The most children that a compound has, at least 1.
+std::uint64_t parts_max(const WorldDefinition& definition) {
+    std::size_t most = 1;
+    for (const CompoundDefinition& compound : definition.compounds) {
+        most = std::max(most, compound.children.size());
+    }
+    return most;
+}
+
+/// Rows that a body has with the triangles below it, for a guess of the capacities.
+std::uint64_t triangles_near(const WorldDefinition& definition) {
+    const bool has_surface = !definition.height_fields.empty() || !definition.meshes.empty();
+    return has_surface ? 64 : 0;
+}
+
 /// Rounded up: of a time above 0 at least one tick.
 std::uint32_t sleep_ticks(const WorldSettings& settings) {
     const Real ticks = settings.sleep_seconds * Real(settings.tick_rate_hz);
@@ -151,10 +166,15 @@ DynamicsSettings dynamics_settings(const WorldDefinition& definition) {
     };
     dynamics.body_capacity = derived(settings.body_capacity, bodies, kBodyCapacityMax);
     const std::uint64_t capacity = dynamics.body_capacity;
-    dynamics.pair_capacity = derived(
-        settings.pair_capacity, capacity * (24 + plane_count(definition)) + 256, kPairCapacityMax);
-    dynamics.manifold_capacity =
-        derived(settings.manifold_capacity, capacity * 12 + 256, kPairCapacityMax);
+    const std::uint64_t parts = parts_max(definition);
+    const std::uint64_t triangles = triangles_near(definition);
+    dynamics.pair_capacity =
+        derived(settings.pair_capacity,
+                capacity * (24 * parts + plane_count(definition) + triangles) * parts + 256,
+                kPairCapacityMax);
+    dynamics.manifold_capacity = derived(settings.manifold_capacity,
+                                         capacity * (12 + triangles / 4) * parts + 256,
+                                         kPairCapacityMax);
     dynamics.joint_capacity =
         derived(settings.joint_capacity, definition.joints.size() + 64, kJointCapacityMax);
     return dynamics;

@@ -191,8 +191,7 @@ std::vector<BodyId> World::overlap(const ShapeDefinition& shape,
         std::int64_t delta[3];
         bodies.delta_to(placed.centre, row, delta);
         ShapeDistance distance{};
-        std::uint32_t part = 0;
-        if (distance_to_shape(placed.core, delta, bodies.shape(row), 0, distance, part)) {
+        if (distance_to_shape(placed.core, delta, bodies.shape(row), 0, distance)) {
             ids.push_back(bodies.id(row));
         }
     });
@@ -217,9 +216,8 @@ World::closest_point(const Vec3& point, Real distance_max, const QueryFilter& fi
         std::int64_t delta[3];
         bodies.delta_to(place, row, delta);
         ShapeDistance found{};
-        std::uint32_t part = 0;
         const std::int64_t farthest = nearest ? nearest->distance.raw() : limit.raw();
-        if (!distance_to_shape(point_core, delta, bodies.shape(row), farthest, found, part)) {
+        if (!distance_to_shape(point_core, delta, bodies.shape(row), farthest, found)) {
             return;
         }
         ClosestPoint candidate{bodies.id(row), 0, point, {}};
@@ -255,14 +253,8 @@ std::optional<ShapeCastHit> World::shape_cast(const ShapeDefinition& shape,
     SegmentProbe probe(placed.centre, way, placed.core.half_extents);
     bodies.visit(probe, [&](BodyRow row) {
         ConvexCastHit found{};
-        std::uint32_t part = 0;
-        if (!cast_at_shape(placed.core,
-                           placed.centre,
-                           way,
-                           bodies.shape(row),
-                           bodies.centre(row),
-                           found,
-                           part)) {
+        if (!cast_at_shape(
+                placed.core, placed.centre, way, bodies.shape(row), bodies.centre(row), found)) {
             return;
         }
         const ShapeCastHit hit{bodies.id(row),

@@ -213,19 +213,22 @@ const char* bad_sleep_field(const BodySleep& sleep,
 /// The highest axis that collide() leaves in the cache: see ManifoldGeometry.
 std::uint32_t axis_max(const DynamicsTables& tables, const Manifold& manifold) {
     constexpr auto kHull = static_cast<std::uint8_t>(ShapeType::hull);
-    const bool has_hull = tables.properties[manifold.row_a].shape == kHull ||
-                          tables.properties[manifold.row_b].shape == kHull;
-    return has_hull ? 2 * kHullFacesMax : 15;
+    const bool may_have_hull = tables.properties[manifold.row_a].shape >= kHull ||
+                               tables.properties[manifold.row_b].shape >= kHull;
+    return may_have_hull ? 2 * kHullFacesMax : 15;
 }
 
 /// Longest arm from a body's centre to a contact point, Q9.22 m: what collide() keeps to, 1.25
-/// bounding radii and half the speculative margin, and 1 mm for roundings. On a plane it is as long
-/// as the partner is deep in it.
+/// bounding radii and half the speculative margin, and 1 mm for roundings. On a plane or
+/// surface it is as long as the partner is deep in it.
 std::int64_t arm_max(const DynamicsTables& tables, BodyRow row) {
     constexpr std::int64_t kSlack = (kSpeculativeMargin >> 1) + ((std::int64_t{1} << 22U) / 1000);
     constexpr std::int64_t kPlaneDepth = std::int64_t{500} << 22U;
-    const std::int64_t radius = tables.properties[row].bounding_radius;
-    return radius == 0 ? kPlaneDepth : radius + (radius >> 2U) + kSlack;
+    const BodyProperties& body = tables.properties[row];
+    const std::int64_t radius = body.bounding_radius;
+    return radius == 0 || is_surface(static_cast<ShapeType>(body.shape))
+               ? kPlaneDepth
+               : radius + (radius >> 2U) + kSlack;
 }
 
 /// In units of 16 raw, so that any lengths' squares add up: arm_max has slack enough.

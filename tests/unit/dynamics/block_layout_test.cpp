@@ -36,7 +36,7 @@ public:
         std::uint32_t index = 0;
         for (const auto& [a, b] : rows) {
             const auto points = static_cast<std::uint8_t>(random() % 5);
-            state.pairs[index] = {a, b, points != 0 ? index : kNoIndex, 0, points, {0, 0}};
+            state.pairs[index] = {a, b, 0, points != 0 ? index : kNoIndex, 0, points, {0, 0}};
             ++index;
         }
         state.pair_count = index;

@@ -299,7 +299,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{
             "UnknownMode", [](BodyDefinition& d) { d.mode = static_cast<BodyMode>(3); }, "mode"},
         Refusal{"UnknownShape",
-                [](BodyDefinition& d) { d.shape.type = static_cast<ShapeType>(5); },
+                [](BodyDefinition& d) { d.shape.type = static_cast<ShapeType>(8); },
                 "shape.type"},
         Refusal{"MovingPlane",
                 [](BodyDefinition& d) { d.shape.type = ShapeType::plane; },

@@ -329,8 +329,10 @@ TEST(SceneErrors, NameFieldAndPlaceInSettings) {
 }
 
 TEST(SceneErrors, RefuseBodiesThatCannotBe) {
-    EXPECT_EQ(body_error("body { mass: 1 }"),
-              "t.textproto:2:1: body[0] has no shape; give sphere, capsule, box, hull or plane");
+    EXPECT_EQ(
+        body_error("body { mass: 1 }"),
+        "t.textproto:2:1: body[0] has no shape; give sphere, capsule, box, hull, compound, plane, "
+        "height_field or mesh");
     EXPECT_EQ(body_error("body { box {} }"), "t.textproto:2:8: body[0].box has no half_extents");
     EXPECT_EQ(body_error("body { plane {} }"),
               "t.textproto:2:8: body[0].plane has no end and cannot move; add `mode: fixed`");
@@ -404,7 +406,9 @@ TEST(SceneErrors, RefusePodsThatCannotBe) {
                        "sphere { radius: 1 } } }"),
               "t.textproto:2:45: pods.body.mode must be dynamic: a pod is driven by forces");
     EXPECT_EQ(error_of("name: \"t\"\npods { players_max: 1 ring_radius: 3 }"),
-              "t.textproto:2:1: pods.body has no shape; give sphere, capsule, box, hull or plane");
+              "t.textproto:2:1: pods.body has no shape; give sphere, capsule, box, hull, compound, "
+              "plane, "
+              "height_field or mesh");
     EXPECT_EQ(error_of("name: \"t\"\npods { players_max: 1 ring_radius: 3 body { sphere { radius: "
                        "1 } heap { count: 2 pitch: 1 } } }"),
               "t.textproto:2:38: pods.body is placed and turned by the ring: it has no "

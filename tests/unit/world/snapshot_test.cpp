@@ -136,7 +136,7 @@ TEST(Snapshot, RefusesWhatHasAnotherNumberOfSlots) {
     const WorldPtr two = busy_world(3);
     std::vector<std::byte> bytes;
     two->save(bytes);
-    const WorldPtr one = make_world(busy_scene(40, 1));
+    const WorldPtr one = make_world(scene_of_all(40, 1));
     const Status status = one->load(bytes);
     ASSERT_FALSE(status.ok());
     EXPECT_NE(status.error().message.find("player"), std::string::npos);

@@ -55,7 +55,7 @@ struct Tables {
     void pair(BodyRow a, BodyRow b) {
         const std::uint32_t row = dynamics.pairs.count();
         dynamics.pairs.set_count(row + 1);
-        dynamics.pairs[row] = Pair{a, b, kNoIndex, 0, 0, {0, 0}};
+        dynamics.pairs[row] = Pair{a, b, 0, kNoIndex, 0, 0, {0, 0}};
     }
 };
 

@@ -1,0 +1,315 @@
+#include "dynamics/contact.h"
+#include "query_scene.h"
+#include "tests/support/part_scenes.h"
+#include "world/state.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <map>
+
+namespace lockwind::test {
+namespace {
+
+double value(Real real) {
+    return static_cast<double>(real.raw()) * 0x1p-32;
+}
+
+/// Hills under boxes, balls, capsules, rocks and compounds that fall.
+WorldDefinition part_scene(ShapeType ground_type) {
+    WorldDefinition scene;
+    scene.height_fields = {field_over(16, 8, hills)};
+    scene.meshes = {mesh_of(scene.height_fields[0])};
+    scene.compounds = {angle_piece(), dumbbell_piece(), table_piece()};
+    scene.hulls = {wedge()};
+    scene.bodies = {ground_of(1, ground_type)};
+    for (std::uint32_t index = 0; index < 16; ++index) {
+        constexpr ShapeType kTypes[] = {ShapeType::compound,
+                                        ShapeType::sphere,
+                                        ShapeType::box,
+                                        ShapeType::compound,
+                                        ShapeType::hull,
+                                        ShapeType::capsule};
+        BodyDefinition body = body_of(
+            2 + index,
+            kTypes[index % 6],
+            metres_of((index % 4) * 1.7 - 2.5, 1.5 + index / 8 * 1.8, (index / 4 % 2) * 2.2 - 1));
+        body.shape.hull = 0;
+        body.shape.compound = index % 3;
+        body.shape.radius = 0.4;
+        body.orientation = {random_symmetric(9, index, 0),
+                            random_symmetric(9, index, 1),
+                            random_symmetric(9, index, 2),
+                            random_symmetric(9, index, 3)};
+        scene.bodies.push_back(body);
+    }
+    return scene;
+}
+
+class Parts : public testing::TestWithParam<ShapeType> {};
+
+TEST_P(Parts, GoOnToTheSameBitsFromASnapshotAtAnyTick) {
+    const WorldDefinition scene = part_scene(GetParam());
+    const WorldPtr world = make_world(scene);
+    const WorldPtr other = make_world(scene);
+    for (int tick = 0; tick < 150; ++tick) {
+        step_idle(*world, 1);
+        std::vector<std::byte> state;
+        world->save(state);
+        if (tick % 10 == 0) {
+            ASSERT_TRUE(other->load(state).ok()) << tick;
+        } else {
+            step_idle(*other, 1);
+        }
+        ASSERT_EQ(world->state_hash(), other->state_hash()) << tick;
+        ASSERT_EQ(world->counts().pairs, other->counts().pairs) << tick;
+    }
+    EXPECT_GT(world->counts().contacts, 30U);
+}
+
+TEST_P(Parts, TouchByOneEventForTwoBodies) {
+    const WorldPtr world = make_world(part_scene(GetParam()));
+    std::map<std::pair<BodyId, BodyId>, bool> touching;
+    int begun = 0;
+    std::size_t rows_most = 0;
+    for (int tick = 0; tick < 300; ++tick) {
+        step_idle(*world, 1);
+        for (const Event& event : world->events()) {
+            if (event.type == EventType::contact_begin || event.type == EventType::contact_end) {
+                bool& was = touching[{event.a, event.b}];
+                const bool begins = event.type == EventType::contact_begin;
+                ASSERT_NE(was, begins) << event.a << " and " << event.b << " tick " << tick;
+                was = begins;
+                begun += begins;
+            }
+        }
+        // Who touches by what was told is who touches by the contacts that there are.
+        std::map<std::pair<BodyId, BodyId>, std::size_t> seen;
+        for (const ContactView& contact : world->contacts()) {
+            rows_most = std::max(rows_most, ++seen[{contact.body_a, contact.body_b}]);
+        }
+        for (const auto& [pair, is_touching] : touching) {
+            ASSERT_EQ(is_touching, seen.count(pair) == 1) << pair.first << " and " << pair.second;
+        }
+    }
+    EXPECT_GT(begun, 16);
+    EXPECT_GT(rows_most, 2U); // several parts of two bodies at once
+}
+
+TEST_P(Parts, FallAsleepAndWakeTogether) {
+    WorldDefinition scene = part_scene(GetParam());
+    scene.height_fields[0] =
+        field_over(16, 8, [](double x, double z) { return 0.03 * (x * x + z * z); });
+    scene.meshes[0] = mesh_of(scene.height_fields[0]);
+    const WorldPtr world = make_world(scene);
+    step_idle(*world, 1800);
+    const std::uint32_t awake = world->counts().awake;
+    EXPECT_LT(awake, 6U); // balls may still roll in the bowl
+    const std::uint64_t contacts = world->counts().contacts;
+    EXPECT_GT(contacts, 30U);
+}
+
+TEST_P(Parts, OfGroupsFarApartDoNotChangeEachOther) {
+    WorldDefinition scene = part_scene(GetParam());
+    const WorldPtr alone = make_world(scene);
+    // The same again, 100 m off: other rows, other slots, more pairs.
+    const std::size_t count = scene.bodies.size();
+    for (std::size_t index = 0; index < count; ++index) {
+        BodyDefinition body = scene.bodies[index];
+        body.id += 1000;
+        body.position.x += Real(100);
+        scene.bodies.push_back(body);
+    }
+    std::rotate(scene.bodies.begin(), scene.bodies.begin() + 5, scene.bodies.end());
+    const WorldPtr both = make_world(scene);
+    step_idle(*alone, 120);
+    step_idle(*both, 120);
+    for (BodyRow row = 0; row < count; ++row) {
+        const BodyView a = alone->body_at(row);
+        const BodyView b = both->body_at(row);
+        const BodyView far = both->body_at(row + static_cast<BodyRow>(count));
+        ASSERT_EQ(a.id, b.id);
+        EXPECT_EQ(a.position, b.position) << a.id;
+        EXPECT_EQ(a.orientation, b.orientation) << a.id;
+        EXPECT_EQ(a.position + Vec3(100, 0, 0), far.position) << a.id;
+    }
+}
+
+TEST_P(Parts, RefusesPartsThatAreNot) {
+    const WorldPtr world = make_world(part_scene(GetParam()));
+    step_idle(*world, 60);
+    std::vector<std::byte> sound;
+    world->save(sound);
+    const auto refuses = [&](auto&& damage) {
+        EXPECT_TRUE(world->load(sound).ok());
+        const auto manifolds =
+            reinterpret_cast<Manifold*>(world->section_bytes(section::kManifold).data());
+        for (std::uint32_t row = 0; row < world->row_count(section::kManifold); ++row) {
+            if (manifolds[row].point_count != 0) {
+                damage(manifolds[row]);
+                break;
+            }
+        }
+        std::vector<std::byte> damaged;
+        world->save(damaged);
+        EXPECT_TRUE(world->load(sound).ok());
+        return !world->load(damaged).ok();
+    };
+    EXPECT_TRUE(refuses([](Manifold& manifold) { manifold.child = 0; }));
+    EXPECT_TRUE(refuses([](Manifold& manifold) { manifold.child = 0xffffffff; }));
+    EXPECT_TRUE(refuses([](Manifold& manifold) { manifold.child = 40000000; }));
+    EXPECT_FALSE(refuses([](Manifold&) {}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Grounds, Parts, testing::Values(ShapeType::height_field, ShapeType::mesh));
+
+TEST(PartQueries, FindWhatABruteForceOverSimpleBodiesFinds) {
+    // A compound's children as bodies of their own: every query must tell the same.
+    QueryDraws draws(17);
+    WorldDefinition whole;
+    WorldDefinition apart;
+    whole.hulls = apart.hulls = {wedge()};
+    whole.settings.gravity = apart.settings.gravity = {0, 0, 0};
+    std::map<BodyId, BodyId> whole_of;
+    for (std::uint32_t index = 0; index < 20; ++index) {
+        CompoundDefinition compound;
+        const Vec3 place = draws.vector(12);
+        const RealQuat turn = draws.orientation();
+        for (std::uint32_t child = 0; child < 3; ++child) {
+            CompoundChild part;
+            part.shape = draws.shape(0.2, 0.9);
+            part.position = draws.vector(1.5);
+            part.orientation = draws.orientation();
+            compound.children.push_back(part);
+            BodyDefinition body;
+            body.id = 100 + 10 * index + child;
+            body.mode = BodyMode::fixed;
+            body.shape = part.shape;
+            body.position = place + rotate(turn, part.position);
+            body.orientation = turn * part.orientation;
+            whole_of[body.id] = 1 + index;
+            apart.bodies.push_back(body);
+        }
+        whole.compounds.push_back(compound);
+        BodyDefinition body = body_of(1 + index, ShapeType::compound, place, index);
+        body.mode = BodyMode::fixed;
+        body.orientation = turn;
+        whole.bodies.push_back(body);
+    }
+    const WorldPtr a = make_world(whole);
+    const WorldPtr b = make_world(apart);
+    int hits = 0;
+    for (int round = 0; round < 1000; ++round) {
+        const Vec3 from = draws.vector(15);
+        const Vec3 to = draws.vector(15);
+        const auto ray_a = a->ray_cast(from, to);
+        const auto ray_b = b->ray_cast(from, to);
+        ASSERT_EQ(ray_a.has_value(), ray_b.has_value());
+        if (ray_a) {
+            ++hits;
+            EXPECT_EQ(ray_a->body, whole_of[ray_b->body]);
+            EXPECT_NEAR(value(ray_a->fraction), value(ray_b->fraction), 1e-6);
+        }
+        const auto near_a = a->closest_point(from, 5);
+        const auto near_b = b->closest_point(from, 5);
+        ASSERT_EQ(near_a.has_value(), near_b.has_value());
+        if (near_a) {
+            EXPECT_NEAR(value(near_a->distance), value(near_b->distance), 1e-5);
+        }
+        ShapeDefinition shape = draws.shape(0.1, 1);
+        shape.hull = 0;
+        const auto cast_a = a->shape_cast(shape, from, {}, to - from);
+        const auto cast_b = b->shape_cast(shape, from, {}, to - from);
+        ASSERT_EQ(cast_a.has_value(), cast_b.has_value());
+        if (cast_a) {
+            EXPECT_NEAR(value(cast_a->fraction), value(cast_b->fraction), 1e-5);
+        }
+        std::vector<BodyId> expected;
+        for (const BodyId id : b->overlap(shape, from, {})) {
+            expected.push_back(whole_of[id]);
+        }
+        std::sort(expected.begin(), expected.end());
+        expected.erase(std::unique(expected.begin(), expected.end()), expected.end());
+        EXPECT_EQ(a->overlap(shape, from, {}), expected);
+    }
+    EXPECT_GT(hits, 50);
+}
+
+TEST(PartQueries, MeetHillsWhereTheyAre) {
+    // The ground is flat within a cell's triangle: its height follows from three samples.
+    WorldDefinition scene;
+    scene.height_fields = {field_over(32, 8, hills)};
+    scene.meshes = {mesh_of(scene.height_fields[0])};
+    const HeightFieldDefinition& field = scene.height_fields[0];
+    const auto height_at = [&](double x, double z) {
+        const double u = (x + 8) / 0.5;
+        const double v = (z + 8) / 0.5;
+        const auto column = static_cast<std::uint32_t>(u);
+        const auto row = static_cast<std::uint32_t>(v);
+        const double s = u - column;
+        const double t = v - row;
+        const auto sample = [&](std::uint32_t c, std::uint32_t r) {
+            return value(field.heights[r * field.columns + c]);
+        };
+        const double low = sample(column, row);
+        const double high = sample(column + 1, row + 1);
+        return s > t ? low + (sample(column + 1, row) - low) * s +
+                           (high - sample(column + 1, row)) * t
+                     : low + (sample(column, row + 1) - low) * t +
+                           (high - sample(column, row + 1)) * s;
+    };
+    scene.bodies = {ground_of(1, ShapeType::height_field)};
+    scene.bodies[0].position = {3, 5, -2};
+    const WorldPtr world = make_world(scene);
+    QueryDraws draws(23);
+    for (int round = 0; round < 500; ++round) {
+        const Vec3 on{draws.within(-7.9, 7.9), 0, draws.within(-7.9, 7.9)};
+        const Vec3 above = on + Vec3{3, 15, -2};
+        const Vec3 below = on + Vec3{3, -5, -2};
+        const double height = 5 + height_at(value(on.x), value(on.z));
+        const auto hit = world->ray_cast(above, below);
+        ASSERT_TRUE(hit.has_value());
+        EXPECT_NEAR(value(hit->point.y), height, 2e-6);
+        EXPECT_GT(value(hit->normal.y), 0.3);
+        EXPECT_FALSE(world->ray_cast(below, above).has_value()); // from behind
+        // A ball that is let down stops above it; from below it passes.
+        ShapeDefinition ball;
+        ball.radius = 0.3;
+        const auto cast = world->shape_cast(ball, above, {}, {0, -20, 0});
+        ASSERT_TRUE(cast.has_value());
+        EXPECT_GT(15 - 20 * value(cast->fraction), height + 0.29);
+        EXPECT_FALSE(world->shape_cast(ball, below, {}, {0, 20, 0}).has_value());
+        // The nearest place is no farther than straight down, and the cast's end is just clear.
+        const Vec3 end = above + Vec3{0, Real(-20) * cast->fraction, 0};
+        const auto nearest = world->closest_point(end, 1);
+        ASSERT_TRUE(nearest.has_value());
+        EXPECT_NEAR(value(nearest->distance), 0.3, 3e-5);
+        EXPECT_TRUE(world->overlap(ball, end, {}).empty());
+        EXPECT_EQ(world->overlap(ball, end - Vec3{0, 0.01, 0}, {}), std::vector<BodyId>{1});
+    }
+}
+
+TEST(PartWorld, ErrorsNameWhatIsWrong) {
+    WorldDefinition scene;
+    const auto refusal = [&] {
+        const Result<WorldPtr> world = World::create(scene);
+        return world.ok() ? "" : world.error().message;
+    };
+    scene.compounds = {{}};
+    EXPECT_EQ(refusal(), "compound 0: has 0 children; give 1 .. 32");
+    scene.compounds.clear();
+    scene.meshes = {{}};
+    EXPECT_EQ(refusal(), "mesh 0: has 0 indices; give three for each triangle, and at least one");
+    scene.meshes.clear();
+    scene.height_fields = {{}};
+    EXPECT_EQ(refusal(), "height field 0: has 0 heights; its columns and rows are 4 samples");
+    scene.height_fields = {field_over(2, 1, hills)};
+    scene.bodies = {body_of(7, ShapeType::height_field, {})};
+    EXPECT_EQ(refusal(), "body 7: shape.type is a height field; only a fixed body may be one");
+    scene.bodies = {ground_of(7, ShapeType::mesh)};
+    EXPECT_EQ(refusal(), "body 7: shape.mesh is 0; there are 0 meshes");
+    scene.bodies = {body_of(7, ShapeType::compound, {}, 3)};
+    EXPECT_EQ(refusal(), "body 7: shape.compound is 3; there are 0 compounds");
+}
+
+} // namespace
+} // namespace lockwind::test
