@@ -9,11 +9,12 @@
 namespace lockwind {
 
 /// Whether the two make a pair when their bounds overlap: one of them is dynamic, their layers and
-/// masks agree, and they are not both sensors.
+/// masks agree, and they are not both sensors. A damaged layer is another one.
 constexpr bool may_meet(const BodyProperties& a, const BodyProperties& b) {
     constexpr auto kDynamic = static_cast<std::uint8_t>(BodyMode::dynamic);
     return (a.mode == kDynamic || b.mode == kDynamic) && (a.sensor & b.sensor) == 0 &&
-           (a.mask >> b.layer & 1U) != 0 && (b.mask >> a.layer & 1U) != 0;
+           (a.mask >> (b.layer % kLayerCount) & 1U) != 0 &&
+           (b.mask >> (a.layer % kLayerCount) & 1U) != 0;
 }
 
 /// A pair that only tells of its overlap: nothing is pushed, held or woken by it.

@@ -4,6 +4,8 @@
 #include "geometry/manifold.h"
 #include "geometry/shape_instance.h"
 
+#include "lockwind/overflow.h"
+
 #include <cstdint>
 
 namespace lockwind {
@@ -14,7 +16,8 @@ inline void centre_delta(const std::int64_t position_a[3],
                          const std::int64_t position_b[3],
                          std::int32_t delta[3]) {
     for (int axis = 0; axis < 3; ++axis) {
-        delta[axis] = static_cast<std::int32_t>((position_b[axis] - position_a[axis]) >> 10);
+        delta[axis] =
+            static_cast<std::int32_t>(raw_subtract(position_b[axis], position_a[axis]) >> 10);
     }
 }
 

@@ -64,7 +64,7 @@ std::uint64_t faces_along(const std::int32_t direction[3], const Polytope& other
 EdgeResult test_edges(const Polytopes& pair, std::int64_t threshold) {
     const Polytope& a = pair.polytope[0];
     const Polytope& b = pair.polytope[1];
-    std::uint64_t along_a[kHullEdgesMax];
+    std::uint64_t along_a[kHullEdgesMax] = {};
     for (std::uint32_t edge = 0; edge < a.edge_count; ++edge) {
         std::int32_t direction[3];
         rotate(pair.other[1].rotation, a.edges[edge].direction, direction);

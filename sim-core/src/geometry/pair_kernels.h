@@ -6,6 +6,8 @@
 #include "geometry/hull.h"
 #include "geometry/rotation.h"
 
+#include "lockwind/assert.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -119,6 +121,7 @@ inline Girth girth_of(const ShapeInstance& shape) {
     case ShapeType::hull:
         return {shape.hull->width_most, shape.hull->width_least};
     case ShapeType::compound:
+        LOCKWIND_ASSERT(shape.compound != nullptr);
         return least_girth(*shape.compound);
     case ShapeType::plane:
     case ShapeType::height_field:

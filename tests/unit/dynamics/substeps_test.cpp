@@ -47,7 +47,7 @@ double stretch(std::uint32_t substeps) {
     for (int tick = 0; tick < 180; ++tick) {
         bench.step();
         double length = 0;
-        for (int link = 2; link <= 8; ++link) {
+        for (BodyRow link = 2; link <= 8; ++link) {
             double square = 0;
             for (int axis = 0; axis < 3; ++axis) {
                 const double way =

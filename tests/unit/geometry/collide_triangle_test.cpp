@@ -18,7 +18,8 @@ Surface lone_triangle(Random& random, double size) {
     for (;;) {
         std::vector<Vec3> vertices;
         for (int corner = 0; corner < 3; ++corner) {
-            vertices.push_back(to_real(random.direction() * (random.uniform(0.2, 1) * size)));
+            const double distance = random.uniform(0.2, 1) * size;
+            vertices.push_back(to_real(random.direction() * distance));
         }
         Result<Surface> surface = make_mesh({vertices, {0, 1, 2}});
         if (surface.ok()) {
@@ -38,8 +39,8 @@ Vec near_place(Random& random, const Surface& surface, double reach, double low)
     const Vec c = corner_of(surface, 0, 2);
     const double s = random.uniform(-0.3, 1.3);
     const double t = random.uniform(-0.3, 1.3);
-    return a + (b - a) * s + (c - a) * t +
-           unit(surface.triangle(0).normal) * random.uniform(low, reach);
+    const double height = random.uniform(low, reach);
+    return a + (b - a) * s + (c - a) * t + unit(surface.triangle(0).normal) * height;
 }
 
 TEST(CollideTriangle, BallTouchesWhereItIsNear) {
@@ -93,8 +94,10 @@ TEST(CollideTriangle, CapsuleTouchesWhereItIsNear) {
     int lying = 0;
     for (int round = 0; round < 10000; ++round) {
         const Surface surface = lone_triangle(random, 2);
-        Body capsule = Body::capsule(random.uniform(0.05, 0.5), random.uniform(0.05, 1));
-        capsule.turn(random.direction(), random.uniform(0, 3.14));
+        const double radius = random.uniform(0.05, 0.5);
+        Body capsule = Body::capsule(radius, random.uniform(0.05, 1));
+        const Vec turn = random.direction();
+        capsule.turn(turn, random.uniform(0, 3.14));
         const double low =
             std::abs(dot(capsule.axis(1), unit(surface.triangle(0).normal))) * capsule.extent(1) +
             0.001;

@@ -130,7 +130,8 @@ TEST_P(Parts, OfGroupsFarApartDoNotChangeEachOther) {
         ASSERT_EQ(a.id, b.id);
         EXPECT_EQ(a.position, b.position) << a.id;
         EXPECT_EQ(a.orientation, b.orientation) << a.id;
-        EXPECT_EQ(a.position + Vec3(100, 0, 0), far.position) << a.id;
+        const Vec3 moved = a.position + Vec3{100, 0, 0};
+        EXPECT_EQ(moved, far.position) << a.id;
     }
 }
 
