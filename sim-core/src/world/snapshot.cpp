@@ -19,7 +19,7 @@ Status World::Impl::validate(StateArena& state, const DynamicsTables* known) {
     if (Status status = check_players(state_players, pod_ids); !status) {
         return status;
     }
-    const Status kinds = check_kinds(rows, known, spawner, settings, shapes);
+    Status kinds = check_kinds(rows, known, spawner, settings, shapes);
     spawner.forget(); // the state that was checked may not be the world's
     if (!kinds) {
         return kinds;
