@@ -37,13 +37,13 @@ def run(*command, **options):
     return subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False, **options)
 
 
-def test_command(build, feature):
-    program, *tests = feature["test"].split(" ", 1)
-    return [build / "bin" / program, *(f"--gtest_filter={names}" for names in tests)]
-
-
 def program_of(feature):
     return feature["test"].split(" ", 1)[0]
+
+
+def test_command(build, feature):
+    _, *tests = feature["test"].split(" ", 1)
+    return [build / "bin" / program_of(feature), *(f"--gtest_filter={names}" for names in tests)]
 
 
 def missing(feature, build):
