@@ -60,7 +60,11 @@ struct ScalarLanes {
     /// The reverse: the lanes' i-th values are values[i].
     template <class Target>
     static void scatter_quad(int first, const Vector* values, Target&& target) {
-        std::copy_n(values, 4, target(first));
+        std::int32_t* const to = target(first);
+        LOCKWIND_UNROLL
+        for (int entry = 0; entry < 4; ++entry) { // one by one: their next reader may want one
+            to[entry] = values[entry];
+        }
     }
 
     static Vector add(Vector a, Vector b) { return raw_add(a, b); }

@@ -50,15 +50,14 @@ public:
     /// Normal rows with their soft bias.
     [[gnu::always_inline]] void solve() {
         read_velocities();
-        Vector speed[kPoints];
-        find_speeds(linear_, angular_, speed);
+        const Wide along = speed_along(linear_);
         Vector applied[kPoints];
         LOCKWIND_UNROLL
         for (std::uint32_t point = 0; point < kPoints; ++point) {
             const ContactBlock::Point& p = block_.point[point];
             const Vector separation = lane(p.separation);
             const Vector old = lane(p.impulse);
-            const Vector v = coupled_speed(speed[point], applied, point);
+            const Vector v = coupled_speed(speed_at(point, along, angular_), applied, point);
             const Vector open = L::add(v, separation);
             const Vector bias =
                 L::maximum(scale(separation, factor(block_.bias_rate)), L::set(-kPushOutSpeedMax));
@@ -77,10 +76,11 @@ public:
     /// velocities, then twist and friction.
     [[gnu::always_inline]] void relax() {
         read_velocities();
-        Vector speed[kPoints];
-        find_speeds(linear_, angular_, speed);
-        Vector moved[kPoints];
-        find_moved(moved);
+        const Wide along = speed_along(linear_);
+        Velocities linear_moved;
+        Velocities angular_moved;
+        read_moved(linear_moved, angular_moved);
+        const Wide along_moved = speed_along(linear_moved);
         Vector applied[kPoints];
         Vector load = L::set(0);
         Vector twist_load = L::set(0);
@@ -90,10 +90,11 @@ public:
             // Bodies that part fast: what adds up over the substeps must stay in the format, with a
             // speed more.
             const Vector separation =
-                L::minimum(L::add(lane(p.separation), moved[point]), L::set(kSeparationMax));
+                L::minimum(L::add(lane(p.separation), speed_at(point, along_moved, angular_moved)),
+                           L::set(kSeparationMax));
             L::store(p.separation + first_, separation);
             const Vector old = lane(p.impulse);
-            const Vector v = coupled_speed(speed[point], applied, point);
+            const Vector v = coupled_speed(speed_at(point, along, angular_), applied, point);
             const Vector lost =
                 scale(L::add(v, L::maximum(separation, L::set(0))), factor(p.row.mass));
             applied[point] = accumulate(point, old, lost);
@@ -113,9 +114,10 @@ public:
     /// Separating speeds of the points at the bodies' present velocities. Scalar lanes only.
     void read_speeds(std::int32_t* out) {
         read_velocities();
-        Vector speed[kPoints];
-        find_speeds(linear_, angular_, speed);
-        std::copy(speed, speed + kPoints, out);
+        const Wide along = speed_along(linear_);
+        for (std::uint32_t point = 0; point < kPoints; ++point) {
+            out[point] = speed_at(point, along, angular_);
+        }
     }
 
     /// Brings one point to a separating speed by an impulse that leaves `carried` + impulse >= 0;
@@ -174,32 +176,29 @@ private:
         L::scatter_quad(first_, angular_.b, [&](int lane) { return body_b(lane).angular; });
     }
 
-    /// Approach speeds J v of the points.
-    [[gnu::always_inline]] void find_speeds(const Velocities& linear,
-                                            const Velocities& angular,
-                                            Vector (&speed)[kPoints]) const {
+    /// The linear velocities' part of J v, the same of all points.
+    [[gnu::always_inline]] Wide speed_along(const Velocities& linear) const {
         Wide along = start();
         LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             along = L::add_product(
                 along, L::subtract(linear.b[axis], linear.a[axis]), factor(block_.normal[axis]));
         }
-        LOCKWIND_UNROLL
-        for (std::uint32_t point = 0; point < kPoints; ++point) {
-            const ContactBlock::Row& row = block_.point[point].row;
-            Wide sum = along;
-            LOCKWIND_UNROLL
-            for (int axis = 0; axis < 3; ++axis) {
-                sum = L::add_product(sum, angular.a[axis], factor(row.jacobian_a[axis]));
-                sum = L::add_product(sum, angular.b[axis], factor(row.jacobian_b[axis]));
-            }
-            speed[point] = finish(sum);
-        }
+        return along;
     }
-    /// The same of the velocities that moved the bodies: the change of s / h.
-    [[gnu::always_inline]] void find_moved(Vector (&moved)[kPoints]) const {
-        Velocities linear;
-        Velocities angular;
+    /// A point's separating speed J v.
+    [[gnu::always_inline]] Vector
+    speed_at(std::uint32_t point, Wide along, const Velocities& angular) const {
+        const ContactBlock::Row& row = block_.point[point].row;
+        LOCKWIND_UNROLL
+        for (int axis = 0; axis < 3; ++axis) {
+            along = L::add_product(along, angular.a[axis], factor(row.jacobian_a[axis]));
+            along = L::add_product(along, angular.b[axis], factor(row.jacobian_b[axis]));
+        }
+        return finish(along);
+    }
+    /// The velocities that moved the bodies: their J v is the change of s / h.
+    [[gnu::always_inline]] void read_moved(Velocities& linear, Velocities& angular) const {
         L::gather_quad(
             first_, [&](int lane) { return body_a(lane).linear_moved; }, linear.a);
         L::gather_quad(
@@ -208,7 +207,6 @@ private:
             first_, [&](int lane) { return body_a(lane).angular_moved; }, angular.a);
         L::gather_quad(
             first_, [&](int lane) { return body_b(lane).angular_moved; }, angular.b);
-        find_speeds(linear, angular, moved);
     }
 
     /// A point's speed after what the points before it applied.
