@@ -106,13 +106,15 @@ struct Tables {
           properties(rows_of<BodyProperties>(world, section::kBodyProperties)),
           sleep(rows_of<BodySleep>(world, section::kBodySleep)),
           pairs(rows_of<Pair>(world, section::kPair)),
-          manifolds(rows_of<Manifold>(world, section::kManifold)) {}
+          manifolds(rows_of<Manifold>(world, section::kManifold)),
+          impulses(rows_of<ContactImpulse>(world, section::kContactImpulse)) {}
 
     std::span<const BodyMotion> motion;
     std::span<const BodyProperties> properties;
     std::span<const BodySleep> sleep;
     std::span<const Pair> pairs;
     std::span<const Manifold> manifolds;
+    std::span<const ContactImpulse> impulses;
 };
 
 template <class Row>
@@ -129,6 +131,10 @@ Manifold without_rows(const Tables& tables, const Pair& pair) {
         manifold.row_b = 0;
     }
     return manifold;
+}
+
+ContactImpulse impulse_of(const Tables& tables, const Pair& pair) {
+    return pair.point_count != 0 ? tables.impulses[pair.manifold] : ContactImpulse{};
 }
 
 /// How many pairs of `part` are in `whole` to the bit; `twin` gives a body's row in `whole`.
@@ -148,7 +154,8 @@ shared_pairs(const Tables& part, const Tables& whole, const std::vector<BodyRow>
         const Pair& other = whole.pairs[next];
         const bool same = std::pair(other.row_a, other.row_b) == place && other.axis == pair.axis &&
                           other.point_count == pair.point_count &&
-                          same_bits(without_rows(part, pair), without_rows(whole, other));
+                          same_bits(without_rows(part, pair), without_rows(whole, other)) &&
+                          same_bits(impulse_of(part, pair), impulse_of(whole, other));
         shared += same ? 1 : 0;
     }
     return shared;

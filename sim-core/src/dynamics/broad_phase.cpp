@@ -245,6 +245,7 @@ StepFault BroadPhase::run(const DynamicsTables& tables,
                           ManifoldSlots& slots,
                           std::vector<ContactChange>& changes) {
     update_bounds(tables, frames, awake);
+    has_changed_pairs_ = false;
     if (moved_.empty()) {
         return StepFault::none;
     }
@@ -257,6 +258,7 @@ StepFault BroadPhase::run(const DynamicsTables& tables,
     if (!find_new_pairs(tables) || pair_count - gone + added_.size() > pair_capacity_) {
         return StepFault::pairs_full;
     }
+    has_changed_pairs_ = gone != 0 || !added_.empty();
     for (const BodyRow row : moved_) {
         store_bounds(bounds_[row], tables.motion[row]);
         tables.sleep[row].moved |= bit_of(MotionBound::other); // new pairs are to be looked at
@@ -267,7 +269,7 @@ StepFault BroadPhase::run(const DynamicsTables& tables,
         if (!is_gone(tables, pair)) {
             tables.pairs[kept++] = pair;
         } else if (pair.point_count != 0 && pair.manifold < tables.manifolds.count()) {
-            slots.free(tables.manifolds, pair.manifold);
+            slots.free(tables, pair.manifold);
             changes.push_back({pair.row_a, pair.row_b, false});
         }
     }

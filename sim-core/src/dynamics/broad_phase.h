@@ -28,7 +28,7 @@ public:
                   std::vector<ContactChange>& changes);
 
     /// Whether the last run renewed any bounds, and so may have changed pairs.
-    bool has_moved() const { return !moved_.empty(); }
+    bool has_changed_pairs() const { return has_changed_pairs_; }
 
     /// Makes the pair table anew from the stored bounds; nothing touches in it. False where it
     /// cannot hold them: it is then empty.
@@ -61,6 +61,7 @@ private:
     std::vector<Bounds> bounds_; // fat, of this tick
     std::vector<BodyRow> moved_;
     std::vector<std::uint8_t> is_moved_;
+    bool has_changed_pairs_ = false;
     std::vector<Key> added_;
     BoundsGrid grid_;
 };

@@ -20,6 +20,8 @@ struct Pair {
     std::uint8_t axis;        // that separated boxes or hulls last; touching, their manifold's
     std::uint8_t point_count; // 0 .. 4; 0 unless touching
     std::uint8_t zero[2];
+
+    friend bool operator==(const Pair&, const Pair&) = default;
 };
 static_assert(sizeof(Pair) == 20);
 
@@ -43,15 +45,22 @@ struct Manifold {
     std::uint8_t point_count;     // 1 .. 4; 0 in a free slot
     std::uint8_t axis;            // of boxes and hulls, see ManifoldCache
     std::uint8_t zero[2];
-    std::int32_t friction_impulse[2]; // Q11.20 m/s: impulse x (1/m_a + 1/m_b), along the tangents
-    std::int32_t twist_impulse;       // Q11.20 m/s, at the smaller gyration radius
     // By point; entries past point_count are 0.
-    std::int32_t normal_impulse[4]; // Q11.20 m/s
-    std::int32_t separation[4];     // Q9.22 m
+    std::int32_t separation[4]; // Q9.22 m
     std::uint32_t feature[4];
     std::int32_t anchor_a[4 * 3]; // Q9.22 m, world, from centre A; xyz of each point
 };
-static_assert(sizeof(Manifold) == 196);
+static_assert(sizeof(Manifold) == 168);
+
+/// What a manifold's contact bore in the last substep, impulse x (1/m_a + 1/m_b) in Q11.20 m/s: the
+/// same row of section "contact_impulse". Apart from the manifold because it changes with every
+/// step, and geometry that is recycled need not be copied and hashed again.
+struct ContactImpulse {
+    std::int32_t friction[2]; // along the tangents
+    std::int32_t twist;       // at the smaller gyration radius
+    std::int32_t normal[4];   // by point; entries past its point_count are 0
+};
+static_assert(sizeof(ContactImpulse) == 28);
 
 inline constexpr std::array kPairFields{
     LOCKWIND_FIELD(Pair, row_a, 0, "", ""),
@@ -76,12 +85,15 @@ inline constexpr std::array kManifoldFields{
     LOCKWIND_FIELD(Manifold, point_count, 0, "", ""),
     LOCKWIND_FIELD(Manifold, axis, 0, "", ""),
     LOCKWIND_FIELD(Manifold, zero, 0, "", ""),
-    LOCKWIND_FIELD(Manifold, friction_impulse, 20, "m/s", ""),
-    LOCKWIND_FIELD(Manifold, twist_impulse, 20, "m/s", ""),
-    LOCKWIND_FIELD(Manifold, normal_impulse, 20, "m/s", ""),
     LOCKWIND_FIELD(Manifold, separation, 22, "m", ""),
     LOCKWIND_FIELD(Manifold, feature, 0, "", ""),
     LOCKWIND_FIELD(Manifold, anchor_a, 22, "m", ""),
+};
+
+inline constexpr std::array kContactImpulseFields{
+    LOCKWIND_FIELD(ContactImpulse, friction, 20, "m/s", ""),
+    LOCKWIND_FIELD(ContactImpulse, twist, 20, "m/s", ""),
+    LOCKWIND_FIELD(ContactImpulse, normal, 20, "m/s", ""),
 };
 
 } // namespace lockwind

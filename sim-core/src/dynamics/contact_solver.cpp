@@ -74,8 +74,8 @@ void PairReader::read(ContactBlock& block, int lane, PairTerms& terms) const {
     const BodyRow row_b = block.row_b[lane];
     const BodyProperties& a = tables.properties[row_a];
     const BodyProperties& b = tables.properties[row_b];
-    const Manifold& manifold = tables.manifolds[block.manifold[lane]];
-    terms.manifold[lane] = &manifold;
+    const ContactImpulse& impulse = tables.impulses[block.manifold[lane]];
+    terms.manifold[lane] = &tables.manifolds[block.manifold[lane]];
     terms.body_a[lane] = &bodies.terms(row_a);
     terms.body_b[lane] = &bodies.terms(row_b);
     std::int32_t delta[3];
@@ -112,11 +112,11 @@ void PairReader::read(ContactBlock& block, int lane, PairTerms& terms) const {
     block.impulse_max[lane] = kImpulseMax / block.point_count[lane];
     for (int point = 0; point < block.point_count_max; ++point) {
         const bool exists = point < block.point_count[lane];
-        block.point[point].impulse[lane] = exists ? manifold.normal_impulse[point] : 0;
+        block.point[point].impulse[lane] = exists ? impulse.normal[point] : 0;
     }
-    block.friction_impulse[0][lane] = manifold.friction_impulse[0];
-    block.friction_impulse[1][lane] = manifold.friction_impulse[1];
-    block.twist_impulse[lane] = manifold.twist_impulse;
+    block.friction_impulse[0][lane] = impulse.friction[0];
+    block.friction_impulse[1][lane] = impulse.friction[1];
+    block.twist_impulse[lane] = impulse.twist;
 }
 
 /// Lanes without a contact are a contact of nothing with nothing.
@@ -239,13 +239,13 @@ void ContactSolver::relax(SolverBodies& bodies) {
 void ContactSolver::write(const DynamicsTables& tables) {
     for (const ContactBlock& block : layout_.blocks()) {
         for (int lane = 0; lane < block.lane_count; ++lane) {
-            Manifold& manifold = tables.manifolds[block.manifold[lane]];
+            ContactImpulse& impulse = tables.impulses[block.manifold[lane]];
             for (int point = 0; point < block.point_count[lane]; ++point) {
-                manifold.normal_impulse[point] = block.point[point].impulse[lane];
+                impulse.normal[point] = block.point[point].impulse[lane];
             }
-            manifold.friction_impulse[0] = block.friction_impulse[0][lane];
-            manifold.friction_impulse[1] = block.friction_impulse[1][lane];
-            manifold.twist_impulse = block.twist_impulse[lane];
+            impulse.friction[0] = block.friction_impulse[0][lane];
+            impulse.friction[1] = block.friction_impulse[1][lane];
+            impulse.twist = block.twist_impulse[lane];
         }
     }
 }

@@ -134,7 +134,7 @@ Dynamics::~Dynamics() = default;
 StepFault Dynamics::broad_phase(const DynamicsTables& tables) {
     impl_->changes.clear();
     impl_->sleep.clear_changes();
-    impl_->slots.forget_freed();
+    impl_->slots.forget_changes();
     impl_->pairs_moved = false;
     impl_->activity.read_rows(tables.sleep);
     const std::span<const BodyRow> awake = impl_->activity.rows();
@@ -145,7 +145,7 @@ StepFault Dynamics::broad_phase(const DynamicsTables& tables) {
     impl_->slots.read(tables.manifolds);
     const StepFault fault =
         impl_->broad.run(tables, impl_->frames, awake, impl_->slots, impl_->changes);
-    impl_->pairs_moved = impl_->broad.has_moved();
+    impl_->pairs_moved = impl_->broad.has_changed_pairs();
     return fault;
 }
 
@@ -214,12 +214,16 @@ std::span<const std::uint32_t> Dynamics::active_joints() const {
     return impl_->activity.joints();
 }
 
-std::span<const std::uint32_t> Dynamics::freed_manifolds() const {
-    return impl_->slots.freed();
+std::span<const std::uint32_t> Dynamics::changed_manifolds() const {
+    return impl_->slots.changes();
 }
 
 bool Dynamics::pairs_moved() const {
     return impl_->pairs_moved;
+}
+
+std::span<const std::uint32_t> Dynamics::changed_pairs() const {
+    return impl_->narrow.changed_pairs();
 }
 
 std::span<const std::uint32_t> Dynamics::broken_joints() const {
@@ -266,12 +270,12 @@ void remap_joints(const DynamicsTables& tables, std::span<const BodyRow> new_row
 }
 
 /// Free slots at the end are not rows.
-void trim_manifolds(const Table<Manifold>& manifolds) {
-    std::uint32_t live = manifolds.count();
-    while (live > 0 && manifolds[live - 1].point_count == 0) {
+void trim_manifolds(const DynamicsTables& tables) {
+    std::uint32_t live = tables.manifolds.count();
+    while (live > 0 && tables.manifolds[live - 1].point_count == 0) {
         --live;
     }
-    manifolds.set_count(live);
+    set_manifold_count(tables, live);
 }
 
 } // namespace
@@ -302,7 +306,7 @@ void remap_rows(const DynamicsTables& tables, std::span<const BodyRow> new_row_o
                 manifold.row_a = row_a;
                 manifold.row_b = row_b;
             } else {
-                manifold = Manifold{};
+                clear_manifold(tables, pair.manifold);
                 wake_dynamic(tables, pair.row_a);
                 wake_dynamic(tables, pair.row_b);
             }
@@ -314,7 +318,7 @@ void remap_rows(const DynamicsTables& tables, std::span<const BodyRow> new_row_o
         }
     }
     tables.pairs.set_count(kept);
-    trim_manifolds(tables.manifolds);
+    trim_manifolds(tables);
 }
 
 void drop_contacts(const DynamicsTables& tables, BodyRow row) {
@@ -324,13 +328,13 @@ void drop_contacts(const DynamicsTables& tables, BodyRow row) {
         if (pair.row_a != row && pair.row_b != row) {
             tables.pairs[kept++] = pair;
         } else if (pair.point_count != 0) {
-            tables.manifolds[pair.manifold] = Manifold{};
+            clear_manifold(tables, pair.manifold);
             wake_dynamic(tables, pair.row_a);
             wake_dynamic(tables, pair.row_b);
         }
     }
     tables.pairs.set_count(kept);
-    trim_manifolds(tables.manifolds);
+    trim_manifolds(tables);
 }
 
 } // namespace lockwind

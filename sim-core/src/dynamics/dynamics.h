@@ -29,8 +29,8 @@ struct DynamicsSettings {
     std::uint32_t joint_capacity = 0;
 };
 
-/// Views of the arena's sections; motion, properties, lives and sleep have the same rows. The step
-/// itself needs neither kinds nor lives.
+/// Views of the arena's sections; motion, properties, lives and sleep have the same rows, and so
+/// have manifolds and impulses. The step itself needs neither kinds nor lives.
 struct DynamicsTables {
     Table<BodyMotion> motion;
     Table<BodyProperties> kinds;
@@ -39,6 +39,7 @@ struct DynamicsTables {
     Table<BodySleep> sleep;
     Table<Pair> pairs;
     Table<Manifold> manifolds;
+    Table<ContactImpulse> impulses;
     Table<Joint> joints;
 };
 
@@ -111,10 +112,11 @@ public:
     /// Rows of the pairs and joints that concern them.
     std::span<const std::uint32_t> active_pairs() const;
     std::span<const std::uint32_t> active_joints() const;
-    /// Rows of manifolds that were freed since the last broad phase began.
-    std::span<const std::uint32_t> freed_manifolds() const;
-    /// Whether the last broad phase changed the pairs.
+    /// Rows of manifolds that were made, renewed or freed since the last broad phase began.
+    std::span<const std::uint32_t> changed_manifolds() const;
+    /// Whether pairs came or went in the last broad phase; if not, only changed_pairs() did change.
     bool pairs_moved() const;
+    std::span<const std::uint32_t> changed_pairs() const;
 
     /// Makes the derived pairs anew from fat bounds and manifolds. False where there are too many
     /// for the table, or a manifold belongs to none of them or to one that has another.

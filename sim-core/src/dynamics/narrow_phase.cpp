@@ -213,8 +213,7 @@ private:
                        ManifoldGeometry& geometry) const;
     void write_manifold(const Pair& pair,
                         const std::int32_t delta[3],
-                        const ManifoldGeometry& geometry,
-                        Manifold& manifold) const;
+                        const ManifoldGeometry& geometry) const;
 
     const DynamicsTables& tables_;
     const BodyFrames& frames_;
@@ -288,36 +287,41 @@ bool PairLook::are_apart(const Pair& pair, const std::int32_t delta[3]) const {
 
 void PairLook::release(Pair& pair) {
     if (is_touching(pair)) {
-        slots_.free(tables_.manifolds, pair.manifold);
+        slots_.free(tables_, pair.manifold);
     }
     pair.manifold = kNoIndex;
     pair.point_count = 0;
 }
 
 /// Turns the friction impulse (f_0 t_0 + f_1 t_1) into the frame of the new normal and tangent.
-void turn_friction(Manifold& manifold,
+void turn_friction(const Manifold& manifold,
                    const std::int32_t normal[3],
-                   const std::int32_t tangent[3]) {
+                   const std::int32_t tangent[3],
+                   std::int32_t friction[2]) {
     std::int32_t old_second[3];
     std::int32_t new_second[3];
     cross_units(manifold.normal, manifold.tangent, old_second);
     cross_units(normal, tangent, new_second);
-    const std::int64_t first = manifold.friction_impulse[0];
-    const std::int64_t second = manifold.friction_impulse[1];
+    const std::int64_t first = friction[0];
+    const std::int64_t second = friction[1];
     const auto turned = [&](const std::int32_t axis[3]) {
         const std::int64_t along = round_unit(dot_wide(manifold.tangent, axis));
         const std::int64_t across = round_unit(dot_wide(old_second, axis));
         return static_cast<std::int32_t>(round_unit_wide(first * along + second * across));
     };
-    manifold.friction_impulse[0] = turned(tangent);
-    manifold.friction_impulse[1] = turned(new_second);
+    friction[0] = turned(tangent);
+    friction[1] = turned(new_second);
 }
 
 void PairLook::write_manifold(const Pair& pair,
                               const std::int32_t delta[3],
-                              const ManifoldGeometry& geometry,
-                              Manifold& manifold) const {
+                              const ManifoldGeometry& geometry) const {
+    Manifold& manifold = tables_.manifolds[pair.manifold];
+    ContactImpulse& impulse = tables_.impulses[pair.manifold];
     const Manifold old = manifold;
+    const ContactImpulse borne = impulse;
+    impulse = ContactImpulse{};
+    std::copy(borne.friction, borne.friction + 2, impulse.friction);
     std::int32_t tangent[3];
     if (!is_touching(pair)) {
         tangent_of(geometry.normal, tangent);
@@ -325,10 +329,10 @@ void PairLook::write_manifold(const Pair& pair,
         std::copy(old.tangent, old.tangent + 3, tangent);
     } else {
         tangent_of(geometry.normal, tangent);
-        turn_friction(manifold, geometry.normal, tangent);
+        turn_friction(old, geometry.normal, tangent, impulse.friction);
     }
-    const std::int32_t friction[3] = {
-        manifold.friction_impulse[0], manifold.friction_impulse[1], manifold.twist_impulse};
+    // A single point bears no twist.
+    impulse.twist = geometry.point_count > 1 ? borne.twist : 0;
     manifold = Manifold{};
     manifold.row_a = pair.row_a;
     manifold.row_b = pair.row_b;
@@ -341,9 +345,6 @@ void PairLook::write_manifold(const Pair& pair,
     manifold.axis_separation = geometry.axis_separation;
     manifold.point_count = static_cast<std::uint8_t>(geometry.point_count);
     manifold.axis = static_cast<std::uint8_t>(geometry.axis);
-    std::copy(friction, friction + 2, manifold.friction_impulse);
-    // A single point bears no twist.
-    manifold.twist_impulse = geometry.point_count > 1 ? friction[2] : 0;
     std::uint32_t unmatched = (1U << pair.point_count) - 1;
     for (std::uint32_t point = 0; point < geometry.point_count; ++point) {
         const ManifoldPoint& fresh = geometry.points[point];
@@ -353,7 +354,7 @@ void PairLook::write_manifold(const Pair& pair,
         for (std::uint32_t former = 0; former < pair.point_count; ++former) {
             const std::uint32_t bit = 1U << former;
             if ((unmatched & bit) != 0 && old.feature[former] == fresh.feature) {
-                manifold.normal_impulse[point] = old.normal_impulse[former];
+                impulse.normal[point] = borne.normal[former];
                 unmatched &= ~bit;
                 break;
             }
@@ -460,14 +461,15 @@ bool PairLook::visit(Pair& pair, std::int32_t reach) {
         }
     }
     if (!is_touching(pair)) {
-        const std::uint32_t slot = slots_.take(tables_.manifolds);
+        const std::uint32_t slot = slots_.take(tables_);
         if (slot == kNoIndex) {
             is_foreseen_ = false;
             return false;
         }
         pair.manifold = slot;
     }
-    write_manifold(pair, delta, geometry, tables_.manifolds[pair.manifold]);
+    slots_.note_change(pair.manifold);
+    write_manifold(pair, delta, geometry);
     pair.point_count = static_cast<std::uint8_t>(geometry.point_count);
     return true;
 }
@@ -508,6 +510,7 @@ void tangent_of(const std::int32_t normal[3], std::int32_t tangent[3]) {
 NarrowPhase::NarrowPhase(const DynamicsSettings& settings)
     : foresight_(settings), gates_(settings.body_capacity), joined_(settings.joint_capacity) {
     foreseen_.reserve(settings.manifold_capacity);
+    changed_.reserve(settings.pair_capacity);
 }
 
 void NarrowPhase::read_gates(const DynamicsTables& tables,
@@ -544,13 +547,14 @@ StepFault NarrowPhase::run(const DynamicsTables& tables,
     read_gates(tables, frames, activity.partners());
     PairLook look(tables, frames, foresight_, slots);
     foreseen_.clear();
+    changed_.clear();
     StepFault fault = StepFault::none;
     for (const std::uint32_t index : activity.pairs()) {
         Pair& pair = tables.pairs[index];
         if (!is_sound(pair, tables)) {
             continue;
         }
-        const bool touched = is_touching(pair);
+        const Pair before = pair;
         bool touches = false;
         if (joined_.has(pair.row_a, pair.row_b)) {
             look.release(pair);
@@ -565,14 +569,17 @@ StepFault NarrowPhase::run(const DynamicsTables& tables,
                 foreseen_.push_back(index);
             }
         }
-        if (touches != touched) {
-            changes.push_back({pair.row_a, pair.row_b, !touched});
+        if (pair != before) {
+            changed_.push_back(index);
+        }
+        if (touches != is_touching(before)) {
+            changes.push_back({pair.row_a, pair.row_b, touches});
         }
     }
     for (const BodyRow row : activity.rows()) {
         tables.sleep[row].moved = 0;
     }
-    slots.trim(tables.manifolds);
+    slots.trim(tables);
     if (fault != StepFault::none) {
         foreseen_.clear(); // no phase follows
     }
@@ -589,11 +596,11 @@ void NarrowPhase::forget_foreseen(const DynamicsTables& tables, ManifoldSlots& s
         if (!is_sound(pair, tables) || !is_touching(pair)) {
             continue;
         }
-        slots.free(tables.manifolds, pair.manifold);
+        slots.free(tables, pair.manifold);
         pair.manifold = kNoIndex;
         pair.point_count = 0;
     }
-    slots.trim(tables.manifolds);
+    slots.trim(tables);
     foreseen_.clear();
 }
 

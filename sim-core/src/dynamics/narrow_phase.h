@@ -25,6 +25,8 @@ public:
                   const Activity& activity,
                   ManifoldSlots& slots,
                   std::vector<ContactChange>& changes);
+    /// Indices of the pairs that the last run changed.
+    std::span<const std::uint32_t> changed_pairs() const { return changed_; }
     /// Frees the manifolds of pairs that do not touch, but might have in this tick.
     void forget_foreseen(const DynamicsTables& tables, ManifoldSlots& slots);
 
@@ -44,6 +46,7 @@ private:
     Foresight foresight_;
     std::vector<Gate> gates_;
     std::vector<std::uint32_t> foreseen_; // pairs with a manifold for this tick alone
+    std::vector<std::uint32_t> changed_;
     JoinedPairs joined_;
 };
 

@@ -41,6 +41,7 @@ Real force_of(std::int32_t impulse, std::int64_t inverse_mass, std::int64_t subs
 
 ContactView view_of(const DynamicsTables& tables, const Pair& pair, std::int64_t substep_rate) {
     const Manifold& manifold = tables.manifolds[pair.manifold];
+    const ContactImpulse& impulse = tables.impulses[pair.manifold];
     const BodyMotion& a = tables.motion[pair.row_a];
     const BodyMotion& b = tables.motion[pair.row_b];
     const BodyProperties& of_a = tables.properties[pair.row_a];
@@ -66,8 +67,8 @@ ContactView view_of(const DynamicsTables& tables, const Pair& pair, std::int64_t
         point.position = (of_a_now + of_b_now) / Real(2);
         point.separation = convert<Real>(Length::from_raw(manifold.separation[index])) +
                            dot(view.normal, of_b_now - of_a_now);
-        point.normal_force = force_of(
-            manifold.normal_impulse[index], of_a.inverse_mass + of_b.inverse_mass, substep_rate);
+        point.normal_force =
+            force_of(impulse.normal[index], of_a.inverse_mass + of_b.inverse_mass, substep_rate);
     }
     return view;
 }

@@ -36,6 +36,7 @@ std::array<std::uint32_t, section::kCount> capacities_of(const DynamicsSettings&
     rows[section::kBodySleep] = capacities.body_capacity;
     rows[section::kPair] = capacities.pair_capacity;
     rows[section::kManifold] = capacities.manifold_capacity;
+    rows[section::kContactImpulse] = capacities.manifold_capacity;
     rows[section::kJoint] = capacities.joint_capacity;
     rows[section::kPlayer] = static_cast<std::uint32_t>(pods);
     return rows;
@@ -116,6 +117,7 @@ DynamicsTables World::Impl::tables_of(StateArena& arena) {
             arena.table<BodySleep>(section::kBodySleep),
             arena.table<Pair>(section::kPair),
             arena.table<Manifold>(section::kManifold),
+            arena.table<ContactImpulse>(section::kContactImpulse),
             arena.table<Joint>(section::kJoint)};
 }
 

@@ -33,10 +33,11 @@ struct RowCounts {
     std::uint32_t body_life;
     std::uint32_t body_sleep;
     std::uint32_t manifold;
+    std::uint32_t contact_impulse;
     std::uint32_t joint;
     std::uint32_t player;
 };
-static_assert(sizeof(RowCounts) == 36);
+static_assert(sizeof(RowCounts) == 40);
 
 /// Sections by number, in the order of kWorldSections.
 namespace section {
@@ -47,13 +48,14 @@ inline constexpr std::uint32_t kBodyKind = 3;
 inline constexpr std::uint32_t kBodyLife = 4;
 inline constexpr std::uint32_t kBodySleep = 5;
 inline constexpr std::uint32_t kManifold = 6;
-inline constexpr std::uint32_t kJoint = 7;
-inline constexpr std::uint32_t kPlayer = 8;
-inline constexpr std::uint32_t kStateCount = 9;
+inline constexpr std::uint32_t kContactImpulse = 7;
+inline constexpr std::uint32_t kJoint = 8;
+inline constexpr std::uint32_t kPlayer = 9;
+inline constexpr std::uint32_t kStateCount = 10;
 // Derived.
-inline constexpr std::uint32_t kBodyProperties = 9;
-inline constexpr std::uint32_t kPair = 10;
-inline constexpr std::uint32_t kCount = 11;
+inline constexpr std::uint32_t kBodyProperties = 10;
+inline constexpr std::uint32_t kPair = 11;
+inline constexpr std::uint32_t kCount = 12;
 } // namespace section
 
 inline constexpr std::array kRowCountsFields{
@@ -64,6 +66,7 @@ inline constexpr std::array kRowCountsFields{
     LOCKWIND_FIELD(RowCounts, body_life, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, body_sleep, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, manifold, 0, "", ""),
+    LOCKWIND_FIELD(RowCounts, contact_impulse, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, joint, 0, "", ""),
     LOCKWIND_FIELD(RowCounts, player, 0, "", ""),
 };
@@ -85,6 +88,7 @@ inline constexpr std::array<SectionDescriptor, section::kCount> kWorldSections{{
     {"body_life", "dynamics", sizeof(BodyLife), false, "", kBodyLifeFields},
     {"body_sleep", "dynamics", sizeof(BodySleep), false, "", kBodySleepFields},
     {"manifold", "dynamics", sizeof(Manifold), false, "", kManifoldFields},
+    {"contact_impulse", "dynamics", sizeof(ContactImpulse), false, "", kContactImpulseFields},
     {"joint", "dynamics", sizeof(Joint), false, "id", kJointFields},
     {"player", "systems", sizeof(Player), false, "", kPlayerFields},
     {"body_properties", "dynamics", sizeof(BodyProperties), true, "", kBodyPropertiesFields},

@@ -186,9 +186,22 @@ void Step::note_changes() {
         versions.touch(section);
     }
     const Dynamics& dynamics = world_.dynamics;
+    for (const std::uint32_t slot : dynamics.changed_manifolds()) {
+        versions.touch(section::kManifold, slot);
+        versions.touch(section::kContactImpulse, slot);
+    }
+    for (const std::uint32_t index : dynamics.changed_pairs()) {
+        versions.touch(section::kPair, index);
+    }
+    if (dynamics.pairs_moved()) {
+        versions.touch(section::kPair);
+    }
+    if (!dynamics.broken_joints().empty()) {
+        versions.touch(section::kJoint);
+    }
     if (dynamics.awake_rows().size() > tables_.motion.count() / 2) {
         for (const std::uint32_t section :
-             {section::kBody, section::kManifold, section::kJoint, section::kPair}) {
+             {section::kBody, section::kContactImpulse, section::kJoint}) {
             versions.touch(section);
         }
         return;
@@ -202,22 +215,12 @@ void Step::note_changes() {
         }
     }
     for (const std::uint32_t index : dynamics.active_pairs()) {
-        versions.touch(section::kPair, index);
         if (tables_.pairs[index].point_count != 0) {
-            versions.touch(section::kManifold, tables_.pairs[index].manifold);
+            versions.touch(section::kContactImpulse, tables_.pairs[index].manifold);
         }
-    }
-    for (const std::uint32_t slot : dynamics.freed_manifolds()) {
-        versions.touch(section::kManifold, slot);
     }
     for (const std::uint32_t row : dynamics.active_joints()) {
         versions.touch(section::kJoint, row);
-    }
-    if (!dynamics.broken_joints().empty()) {
-        versions.touch(section::kJoint);
-    }
-    if (dynamics.pairs_moved()) {
-        versions.touch(section::kPair);
     }
 }
 

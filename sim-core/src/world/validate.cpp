@@ -261,20 +261,16 @@ const char* bad_point_field(const Manifold& manifold,
                    longest_b)) {
         return "centre_delta";
     }
-    return manifold.normal_impulse[point] < 0 ? "normal_impulse" : nullptr;
+    return nullptr;
 }
 
 bool is_unused(const Manifold& manifold, std::uint32_t point) {
     const auto is_zero = [](std::int32_t value) { return value == 0; };
-    return manifold.normal_impulse[point] == 0 && manifold.separation[point] == 0 &&
-           manifold.feature[point] == 0 &&
+    return manifold.separation[point] == 0 && manifold.feature[point] == 0 &&
            std::all_of(manifold.anchor_a + 3 * point, manifold.anchor_a + 3 * point + 3, is_zero);
 }
 
 const char* bad_manifold_field(const DynamicsTables& tables, const Manifold& manifold) {
-    // The solver caps a contact's normal impulses together, and friction at 4 x 480 m/s.
-    constexpr std::int64_t kNormalImpulseMax = std::int64_t{960} << 20U;
-    constexpr std::int64_t kFrictionImpulseMax = std::int64_t{1920} << 20U;
     if (manifold.row_a >= manifold.row_b || manifold.row_b >= tables.motion.count()) {
         return "row_b";
     }
@@ -290,18 +286,12 @@ const char* bad_manifold_field(const DynamicsTables& tables, const Manifold& man
     if (!is_unit(manifold.orientation_a) || !is_unit(manifold.orientation_b)) {
         return "orientation_a or orientation_b";
     }
-    if (!all_within(manifold.friction_impulse, kFrictionImpulseMax) ||
-        !all_within({&manifold.twist_impulse, 1}, kFrictionImpulseMax)) {
-        return "friction_impulse";
-    }
     const std::int64_t longest_a = arm_max(tables, manifold.row_a);
     const std::int64_t longest_b = arm_max(tables, manifold.row_b);
     if (!all_within(manifold.separation, longest_a + longest_b)) {
         return "separation";
     }
-    std::int64_t normal_impulse = 0;
     for (std::uint32_t point = 0; point < kManifoldPointsMax; ++point) {
-        normal_impulse += manifold.normal_impulse[point];
         if (point >= manifold.point_count) {
             if (!is_unused(manifold, point)) {
                 return "a point past point_count";
@@ -311,10 +301,29 @@ const char* bad_manifold_field(const DynamicsTables& tables, const Manifold& man
             return field;
         }
     }
-    if (normal_impulse > kNormalImpulseMax) {
-        return "normal_impulse";
-    }
     return all_zero(manifold.zero) ? nullptr : "zero";
+}
+
+/// Of a manifold of `point_count` points, 0 of a free row.
+const char* bad_impulse_field(const ContactImpulse& impulse, std::uint32_t point_count) {
+    // The solver caps a contact's normal impulses together, and friction at 4 x 480 m/s.
+    constexpr std::int64_t kNormalMax = std::int64_t{960} << 20U;
+    constexpr std::int64_t kFrictionMax = std::int64_t{1920} << 20U;
+    const std::int64_t bound = point_count == 0 ? 0 : kFrictionMax;
+    if (!all_within(impulse.friction, bound)) {
+        return "friction";
+    }
+    if (!all_within({&impulse.twist, 1}, bound)) {
+        return "twist";
+    }
+    std::int64_t sum = 0;
+    for (std::uint32_t point = 0; point < kManifoldPointsMax; ++point) {
+        if (impulse.normal[point] < 0 || (impulse.normal[point] != 0 && point >= point_count)) {
+            return "normal";
+        }
+        sum += impulse.normal[point];
+    }
+    return sum > kNormalMax ? "normal" : nullptr;
 }
 
 } // namespace
@@ -422,6 +431,9 @@ Status check_joints(const DynamicsTables& tables) {
 
 Status check_contacts(const DynamicsTables& tables, Dynamics& dynamics) {
     constexpr Manifold kFree{};
+    if (tables.impulses.count() != tables.manifolds.count()) {
+        return Error{"snapshot: sections \"manifold\" and \"contact_impulse\" differ in rows"};
+    }
     for (std::uint32_t row = 0; row < tables.manifolds.count(); ++row) {
         const Manifold& manifold = tables.manifolds[row];
         if (manifold.point_count == 0) {
@@ -430,6 +442,10 @@ Status check_contacts(const DynamicsTables& tables, Dynamics& dynamics) {
             }
         } else if (const char* field = bad_manifold_field(tables, manifold); field != nullptr) {
             return bad("manifold", row, field);
+        }
+        if (const char* field = bad_impulse_field(tables.impulses[row], manifold.point_count);
+            field != nullptr) {
+            return bad("contact_impulse", row, field);
         }
     }
     if (!dynamics.derive_pairs(tables)) {

@@ -25,12 +25,14 @@ struct DynamicsState {
     std::vector<BodySleep> sleep;
     std::vector<Pair> pairs;
     std::vector<Manifold> manifolds;
+    std::vector<ContactImpulse> impulses;
     std::vector<Joint> joints;
     std::uint32_t motion_count = 0;
     std::uint32_t properties_count = 0;
     std::uint32_t sleep_count = 0;
     std::uint32_t pair_count = 0;
     std::uint32_t manifold_count = 0;
+    std::uint32_t impulse_count = 0;
     std::uint32_t joint_count = 0;
     std::uint32_t tick = 0;
 };
@@ -49,7 +51,8 @@ inline bool same_bits(const DynamicsState& a, const DynamicsState& b) {
            a.manifold_count == b.manifold_count && a.joint_count == b.joint_count &&
            same(a.motion, b.motion) && same(a.properties, b.properties) && same(a.sleep, b.sleep) &&
            std::equal(a.pairs.begin(), a.pairs.end(), b.pairs.begin(), b.pairs.end(), same_pair) &&
-           same(a.manifolds, b.manifolds) && same(a.joints, b.joints);
+           same(a.manifolds, b.manifolds) && same(a.impulses, b.impulses) &&
+           same(a.joints, b.joints);
 }
 
 /// A Dynamics over tables in vectors, for tests: no world, no players, no despawning.
@@ -65,6 +68,7 @@ public:
         state_.sleep.resize(capacity);
         state_.pairs.resize(pair_capacity());
         state_.manifolds.resize(manifold_capacity());
+        state_.impulses.resize(manifold_capacity());
         state_.joints.resize(capacity);
         renew();
     }
@@ -132,6 +136,7 @@ public:
                 {state_.sleep.data(), &state_.sleep_count, capacity_},
                 {state_.pairs.data(), &state_.pair_count, pair_capacity()},
                 {state_.manifolds.data(), &state_.manifold_count, manifold_capacity()},
+                {state_.impulses.data(), &state_.impulse_count, manifold_capacity()},
                 {state_.joints.data(), &state_.joint_count, capacity_}};
     }
 

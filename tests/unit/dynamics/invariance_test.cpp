@@ -146,11 +146,14 @@ TEST(Invariance, DroppingEverythingBetweenPhasesChangesNoBit) {
 /// Reverses the live slots and leaves a hole in front of them.
 void shuffle_slots(DynamicsState& state) {
     const std::vector<Manifold> old = state.manifolds;
+    const std::vector<ContactImpulse> borne = state.impulses;
     const std::uint32_t count = state.manifold_count;
     std::fill(state.manifolds.begin(), state.manifolds.end(), Manifold{});
+    std::fill(state.impulses.begin(), state.impulses.end(), ContactImpulse{});
     const auto moved_to = [&](std::uint32_t slot) { return 5 + count - 1 - slot; };
     for (std::uint32_t slot = 0; slot < count; ++slot) {
         state.manifolds[moved_to(slot)] = old[slot];
+        state.impulses[moved_to(slot)] = borne[slot];
     }
     for (Pair& pair : state.pairs) {
         if (pair.point_count != 0) {
@@ -158,6 +161,7 @@ void shuffle_slots(DynamicsState& state) {
         }
     }
     state.manifold_count = 5 + count;
+    state.impulse_count = 5 + count;
 }
 
 TEST(Invariance, PlacesOfManifoldsDoNotMatter) {
@@ -181,6 +185,10 @@ TEST(Invariance, PlacesOfManifoldsDoNotMatter) {
             EXPECT_EQ(std::memcmp(&plain.state().manifolds[a.manifold],
                                   &shuffled.state().manifolds[b.manifold],
                                   sizeof(Manifold)),
+                      0);
+            EXPECT_EQ(std::memcmp(&plain.state().impulses[a.manifold],
+                                  &shuffled.state().impulses[b.manifold],
+                                  sizeof(ContactImpulse)),
                       0);
         }
     }
@@ -220,12 +228,15 @@ void check_tables(DynamicsBench& bench) {
             ASSERT_EQ(manifold.row_b, pair.row_b);
         }
     }
+    ASSERT_EQ(state.impulse_count, state.manifold_count);
     const Manifold dead{};
+    const ContactImpulse none_borne{};
     for (std::size_t slot = 0; slot < state.manifolds.size(); ++slot) {
         const Manifold& manifold = state.manifolds[slot];
         ASSERT_EQ(owners[slot], manifold.point_count != 0 ? 1 : 0);
         if (manifold.point_count == 0) {
             ASSERT_EQ(std::memcmp(&manifold, &dead, sizeof dead), 0);
+            ASSERT_EQ(std::memcmp(&state.impulses[slot], &none_borne, sizeof none_borne), 0);
         }
     }
     if (state.manifold_count > 0) {

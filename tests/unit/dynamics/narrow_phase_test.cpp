@@ -66,13 +66,14 @@ TEST(NarrowPhase, ImpulsesFollowTheirFeatures) {
     bench.add(body);
     bench.run(30);
     const Manifold before = bench.state().manifolds[0];
+    const ContactImpulse borne = bench.state().impulses[0];
     ASSERT_EQ(before.point_count, 4);
     // The points in another order, and the pair looked at again.
     Manifold& turned = bench.state().manifolds[0];
     for (int point = 0; point < 4; ++point) {
         const int from = (point + 1) % 4;
         turned.feature[point] = before.feature[from];
-        turned.normal_impulse[point] = before.normal_impulse[from];
+        bench.state().impulses[0].normal[point] = borne.normal[from];
     }
     bench.look_again();
     bench.state().manifolds[0].centre_delta[0] += 1 << 22;
@@ -80,7 +81,7 @@ TEST(NarrowPhase, ImpulsesFollowTheirFeatures) {
     const Manifold& after = bench.state().manifolds[0];
     for (int point = 0; point < 4; ++point) {
         EXPECT_EQ(after.feature[point], before.feature[point]);
-        EXPECT_EQ(after.normal_impulse[point], before.normal_impulse[point]);
+        EXPECT_EQ(bench.state().impulses[0].normal[point], borne.normal[point]);
     }
 }
 
@@ -91,17 +92,18 @@ TEST(NarrowPhase, FrictionKeepsItsDirectionWhenTheNormalTurns) {
     bench.step();
     Manifold& manifold = bench.state().manifolds[0];
     ASSERT_EQ(manifold.point_count, 1);
-    manifold.friction_impulse[0] = 300000;
-    manifold.friction_impulse[1] = -500000;
-    const auto world_friction = [](const Manifold& m, double out[3]) {
+    ContactImpulse& impulse = bench.state().impulses[0];
+    impulse.friction[0] = 300000;
+    impulse.friction[1] = -500000;
+    const auto world_friction = [&impulse](const Manifold& m, double out[3]) {
         for (int axis = 0; axis < 3; ++axis) {
             const int next = (axis + 1) % 3;
             const int last = (axis + 2) % 3;
             const double n[2] = {std::ldexp(m.normal[next], -30), std::ldexp(m.normal[last], -30)};
             const double t[2] = {std::ldexp(m.tangent[next], -30),
                                  std::ldexp(m.tangent[last], -30)};
-            out[axis] = m.friction_impulse[0] * std::ldexp(m.tangent[axis], -30) +
-                        m.friction_impulse[1] * (n[0] * t[1] - n[1] * t[0]);
+            out[axis] = impulse.friction[0] * std::ldexp(m.tangent[axis], -30) +
+                        impulse.friction[1] * (n[0] * t[1] - n[1] * t[0]);
         }
     };
     double before[3];

@@ -180,6 +180,11 @@ Manifold& manifold(World& world) {
     return *found;
 }
 
+ContactImpulse& impulse(World& world) {
+    const std::ptrdiff_t row = &manifold(world) - rows<Manifold>(world, section::kManifold);
+    return rows<ContactImpulse>(world, section::kContactImpulse)[row];
+}
+
 Player& player(World& world) {
     return rows<Player>(world, section::kPlayer)[1];
 }
@@ -276,12 +281,12 @@ TEST(Snapshot, RefusesDamagedContacts) {
         {"points that differ", [](World& w) { --manifold(w).point_count; }},
         {"normal", [](World& w) { manifold(w).normal[1] /= 2; }},
         {"tangent", [](World& w) { std::memset(manifold(w).tangent, 0, 12); }},
-        {"impulse", [](World& w) { manifold(w).normal_impulse[0] = -1; }},
-        {"impulse", [](World& w) { manifold(w).normal_impulse[0] = 0x7fffffff; }},
+        {"impulse", [](World& w) { impulse(w).normal[0] = -1; }},
+        {"impulse", [](World& w) { impulse(w).normal[0] = 0x7fffffff; }},
         {"impulses together",
          [](World& w) {
              for (std::uint32_t point = 0; point < manifold(w).point_count; ++point) {
-                 manifold(w).normal_impulse[point] = 961 * (1 << 20) / manifold(w).point_count;
+                 impulse(w).normal[point] = 961 * (1 << 20) / manifold(w).point_count;
              }
          }},
         {"arm of a point",
@@ -299,8 +304,17 @@ TEST(Snapshot, RefusesDamagedContacts) {
                  }
              }
          }},
-        {"friction impulse", [](World& w) { manifold(w).friction_impulse[1] = 0x7fffffff; }},
-        {"twist impulse", [](World& w) { manifold(w).twist_impulse = -0x7fffffff; }},
+        {"friction impulse", [](World& w) { impulse(w).friction[1] = 0x7fffffff; }},
+        {"twist impulse", [](World& w) { impulse(w).twist = -0x7fffffff; }},
+        {"impulse of a point past the count",
+         [](World& w) {
+             const Manifold* manifolds = rows<Manifold>(w, section::kManifold);
+             std::uint32_t row = 0;
+             while (manifolds[row].point_count != 1) {
+                 ++row;
+             }
+             rows<ContactImpulse>(w, section::kContactImpulse)[row].normal[1] = 1;
+         }},
         {"anchor", [](World& w) { manifold(w).anchor_a[1] = 0x7fffffff; }},
         {"orientation", [](World& w) { manifold(w).orientation_b[3] /= 2; }},
         {"centre delta", [](World& w) { manifold(w).centre_delta[2] = 0x7fffffff; }},

@@ -16,7 +16,7 @@ namespace {
 constexpr BodyId kKinds = 7; // of records
 
 constexpr std::array<std::uint32_t, section::kCount> kCapacities{
-    1, 1, 32, 32, 32, 32, 200, 8, 4, 32, 200};
+    1, 1, 32, 32, 32, 32, 200, 200, 8, 4, 32, 200};
 
 struct Tables {
     StateArena arena{kWorldSections, kCapacities};
@@ -27,6 +27,7 @@ struct Tables {
                             arena.table<BodySleep>(section::kBodySleep),
                             arena.table<Pair>(section::kPair),
                             arena.table<Manifold>(section::kManifold),
+                            arena.table<ContactImpulse>(section::kContactImpulse),
                             arena.table<Joint>(section::kJoint)};
 
     void add(BodyId id) {

@@ -27,6 +27,7 @@ TEST(StateLayout, SectionsAreThoseThatTheirNumbersName) {
         {section::kBodyLife, "body_life"},
         {section::kBodySleep, "body_sleep"},
         {section::kManifold, "manifold"},
+        {section::kContactImpulse, "contact_impulse"},
         {section::kJoint, "joint"},
         {section::kPlayer, "player"},
         {section::kBodyProperties, "body_properties"},

@@ -97,7 +97,7 @@ TEST(WorldSimulation, CorruptsWhatBenchmarksOfForensicsNeed) {
                               "player.score",
                               "globals.seed",
                               "body_kind.friction",
-                              "manifold.normal_impulse"}) {
+                              "contact_impulse.normal"}) {
         const auto simulation = make_simulation();
         advance(*simulation, 60);
         EXPECT_TRUE(simulation->corrupt(field)) << field;
