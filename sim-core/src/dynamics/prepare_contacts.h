@@ -117,6 +117,19 @@ private:
     /// inverse inertia x row x share
     static void respond(const Vector inertia[6], const Vector row[3], Vector share, Vector out[3]) {
         constexpr int kIndex[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+        if constexpr (L::kWidth == 1) {
+            // Cubes, spheres and fixed bodies: the products that are 0 are left out.
+            if ((inertia[1] | inertia[2] | inertia[4]) == 0) {
+                LOCKWIND_UNROLL
+                for (int axis = 0; axis < 3; ++axis) {
+                    out[axis] = L::template multiply<kCoefficientFraction>(
+                        L::template multiply<kInertiaFraction>(inertia[kIndex[axis][axis]],
+                                                               row[axis]),
+                        share);
+                }
+                return;
+            }
+        }
         LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             Wide sum = L::template start<kInertiaFraction>();

@@ -229,19 +229,40 @@ private:
         return L::subtract(now, old);
     }
 
+    /// Changes the linear velocities by what along(share, out) makes of a body's share.
+    template <class Along>
+    [[gnu::always_inline]] void push(Along&& along) {
+        Vector change[3];
+        along(factor(block_.share_b), change);
+        LOCKWIND_UNROLL
+        for (int axis = 0; axis < 3; ++axis) {
+            linear_.b[axis] = L::add(linear_.b[axis], change[axis]);
+        }
+        // Equal masses are frequent, and one lane is not to be multiplied twice.
+        if (L::kWidth > 1 || block_.share_a[first_] != block_.share_b[first_]) {
+            along(factor(block_.share_a), change);
+        }
+        LOCKWIND_UNROLL
+        for (int axis = 0; axis < 3; ++axis) {
+            linear_.a[axis] = L::subtract(linear_.a[axis], change[axis]);
+        }
+    }
+
     [[gnu::always_inline]] void apply_normal(const Vector (&impulse)[kPoints]) {
         Vector total = impulse[0];
         LOCKWIND_UNROLL
         for (std::uint32_t point = 1; point < kPoints; ++point) {
             total = L::add(total, impulse[point]);
         }
-        const Vector to_a = scale(total, factor(block_.share_a));
-        const Vector to_b = scale(total, factor(block_.share_b));
+        push([&](const Factor& share, Vector(&out)[3]) __attribute__((always_inline)) {
+            const Vector part = scale(total, share);
+            LOCKWIND_UNROLL
+            for (int axis = 0; axis < 3; ++axis) {
+                out[axis] = scale(part, factor(block_.normal[axis]));
+            }
+        });
         LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
-            const Factor normal = factor(block_.normal[axis]);
-            linear_.a[axis] = L::subtract(linear_.a[axis], scale(to_a, normal));
-            linear_.b[axis] = L::add(linear_.b[axis], scale(to_b, normal));
             Wide sum_a = start();
             Wide sum_b = start();
             LOCKWIND_UNROLL
@@ -256,23 +277,23 @@ private:
     }
 
     [[gnu::always_inline]] void apply_tangent(Vector first, Vector second) {
-        const Factor share_a = factor(block_.share_a);
-        const Factor share_b = factor(block_.share_b);
-        const Vector to_a[2] = {scale(first, share_a), scale(second, share_a)};
-        const Vector to_b[2] = {scale(first, share_b), scale(second, share_b)};
         const ContactBlock::Row& row_0 = block_.tangent_row[0];
         const ContactBlock::Row& row_1 = block_.tangent_row[1];
         const auto sum_of = [](Vector x, const Factor& by_x, Vector y, const Factor& by_y) {
             return finish(L::add_product(L::add_product(start(), x, by_x), y, by_y));
         };
+        push([&](const Factor& share, Vector(&out)[3]) __attribute__((always_inline)) {
+            const Vector parts[2] = {scale(first, share), scale(second, share)};
+            LOCKWIND_UNROLL
+            for (int axis = 0; axis < 3; ++axis) {
+                out[axis] = sum_of(parts[0],
+                                   factor(block_.tangent[0][axis]),
+                                   parts[1],
+                                   factor(block_.tangent[1][axis]));
+            }
+        });
         LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
-            const Factor tangent_0 = factor(block_.tangent[0][axis]);
-            const Factor tangent_1 = factor(block_.tangent[1][axis]);
-            linear_.a[axis] =
-                L::subtract(linear_.a[axis], sum_of(to_a[0], tangent_0, to_a[1], tangent_1));
-            linear_.b[axis] =
-                L::add(linear_.b[axis], sum_of(to_b[0], tangent_0, to_b[1], tangent_1));
             angular_.a[axis] = L::add(
                 angular_.a[axis],
                 sum_of(
