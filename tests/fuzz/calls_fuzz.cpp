@@ -78,12 +78,13 @@ ShapeDefinition draw_shape(Draws& draws) {
                                       ShapeType::box,
                                       ShapeType::hull,
                                       ShapeType::compound,
+                                      ShapeType::height_field,
                                       ShapeType::mesh};
     const Real least = draws.is_tame() ? Real(0.05) : Real(0);
     ShapeDefinition shape;
     // A wild one has a type that there is not.
     shape.type =
-        draws.is_tame() ? kBounded[draws.below(6)] : static_cast<ShapeType>(draws.below(10));
+        draws.is_tame() ? kBounded[draws.below(7)] : static_cast<ShapeType>(draws.below(10));
     shape.half_extents = {
         draws.positive() + least, draws.positive() + least, draws.positive() + least};
     shape.radius = draws.positive() + least;
@@ -190,6 +191,21 @@ WorldDefinition draw_world(Draws& draws) {
                 {draw_shape(draws), draws.vector(), draws.turn(), draws.positive()});
         }
         definition.compounds.push_back(parts);
+    }
+    for (std::uint32_t field = draws.below(2); field > 0; --field) {
+        HeightFieldDefinition ground;
+        ground.columns = (draws.is_tame() ? 2 : 0) + draws.below(4);
+        ground.rows = (draws.is_tame() ? 2 : 0) + draws.below(4);
+        ground.spacing_x = draws.positive() + (draws.is_tame() ? Real(0.1) : Real(0));
+        ground.spacing_z = draws.positive() + (draws.is_tame() ? Real(0.1) : Real(0));
+        ground.heights.resize(ground.columns * ground.rows + (draws.is_tame() ? 0 : 1));
+        for (Real& height : ground.heights) {
+            height = draws.real();
+        }
+        if (draws.flag()) {
+            ground.holes.push_back(draws.below(draws.is_tame() ? 1 : 20));
+        }
+        definition.height_fields.push_back(ground);
     }
     for (std::uint32_t mesh = draws.below(2); mesh > 0; --mesh) {
         MeshDefinition triangles;
