@@ -60,7 +60,7 @@ void Colouring::run(const DynamicsTables& tables, const Activity& activity) {
 }
 
 BlockLayout::BlockLayout(std::uint32_t manifold_capacity)
-    : blocks_(manifold_capacity / kBlockLanes + kColours + 1) {}
+    : blocks_(manifold_capacity / kBlockLanes + kColours + 1), inputs_(blocks_.size()) {}
 
 void BlockLayout::run(const DynamicsTables& tables, std::span<const ColouredContact> contacts) {
     std::uint32_t place[(kColours + 1) * kBlockPoints] = {};

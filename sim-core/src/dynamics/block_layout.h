@@ -43,11 +43,14 @@ public:
     explicit BlockLayout(std::uint32_t manifold_capacity);
     void run(const DynamicsTables& tables, std::span<const ColouredContact> contacts);
     std::span<ContactBlock> blocks() { return {blocks_.data(), count_}; }
+    /// What the blocks' rows were made from when they were last made, be it in an earlier tick.
+    RowInputs& inputs(std::size_t block) { return inputs_[block]; }
     /// Blocks from this one on hold the overflow: only one lane at a time may be solved.
     std::uint32_t overflow_first() const { return overflow_first_; }
 
 private:
     std::vector<ContactBlock> blocks_;
+    std::vector<RowInputs> inputs_;
     std::uint32_t count_ = 0;
     std::uint32_t overflow_first_ = 0;
 };

@@ -89,6 +89,12 @@ struct alignas(64) ContactBlock {
     Lanes<std::int32_t> twist_impulse;
 };
 
+/// What a block's rows were made from, in the order of BlockPreparation::is_known(): all that they
+/// depend on. A block that comes to hold the same contacts again, made from the same, has its rows.
+struct alignas(64) RowInputs {
+    std::int32_t entry[34 + 4 * kBlockPoints][kBlockLanes];
+};
+
 /// Index into `coupling` of points (row, column), column < row.
 constexpr int coupling_index(int row, int column) {
     return row * (row - 1) / 2 + column;

@@ -17,6 +17,7 @@ struct ContactKernels {
     void (*prepare)(const PairTerms& terms,
                     std::int32_t substep_rate,
                     std::int32_t separation_max,
+                    RowInputs& inputs,
                     ContactBlock& block);
     Pass warm_start;
     Pass solve;
@@ -64,9 +65,10 @@ ContactKernels kernels_of() {
     return {[](const PairTerms& terms,
                std::int32_t substep_rate,
                std::int32_t separation_max,
+               RowInputs& inputs,
                ContactBlock& block) {
                 for (int first = 0; first < block.lane_count; first += L::kWidth) {
-                    BlockPreparation<L>(terms, block, first).run(substep_rate, separation_max);
+                    BlockPreparation<L>(terms, inputs, block, first).run(substep_rate, separation_max);
                 }
             },
             [](std::span<ContactBlock> blocks, SolverBody* bodies) {

@@ -180,12 +180,18 @@ void ContactSolver::fill_blocks(const StepConstants& constants,
                                 const SolverBodies& bodies) {
     const PairReader reader{constants, tables, frames, bodies};
     PairTerms terms{};
-    for (ContactBlock& block : layout_.blocks()) {
+    const std::span<ContactBlock> blocks = layout_.blocks();
+    for (std::size_t index = 0; index < blocks.size(); ++index) {
+        ContactBlock& block = blocks[index];
         for (int lane = 0; lane < block.lane_count; ++lane) {
             reader.read(block, lane, terms);
         }
         fill_padding(bodies.padding_row(), block, terms);
-        kernels_.prepare(terms, constants.substep_rate, constants.separation_max, block);
+        kernels_.prepare(terms,
+                         constants.substep_rate,
+                         constants.separation_max,
+                         layout_.inputs(index),
+                         block);
     }
 }
 

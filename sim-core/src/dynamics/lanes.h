@@ -84,6 +84,12 @@ struct ScalarLanes {
         return value > 0 ? positive : other;
     }
 
+    /// Not 0 where `difference` is not, or a and b differ.
+    static Vector add_difference(Vector difference, Vector a, Vector b) {
+        return difference | (a ^ b);
+    }
+    static bool is_zero(Vector a) { return a == 0; }
+
     static Wide zero() { return 0; }
     /// A sum to which products are added, and which round<Shift> turns back into a vector.
     template <int Shift>

@@ -21,14 +21,15 @@ struct PairTerms {
 
 /// Fills the rows of a block from its contacts' manifolds and bodies: normal rows, their couplings,
 /// the friction centre, two tangent rows and the twist row. The block's shares, friction, softness
-/// and twist levers are already there.
+/// and twist levers are already there. Rows that it still has from the tick before, made from the
+/// same, stay: of bodies that rest, most do.
 template <class L>
 class BlockPreparation {
 public:
     using Vector = typename L::Vector;
 
-    BlockPreparation(const PairTerms& terms, ContactBlock& block, int first)
-        : terms_(terms), block_(block), first_(first),
+    BlockPreparation(const PairTerms& terms, RowInputs& inputs, ContactBlock& block, int first)
+        : terms_(terms), inputs_(inputs), block_(block), first_(first),
           points_(static_cast<std::uint32_t>(L::kWidth == 1 ? block.point_count[first]
                                                             : block.point_count_max)) {}
 
@@ -39,6 +40,13 @@ public:
         LOCKWIND_UNROLL
         for (std::uint32_t point = 0; point < points_; ++point) {
             make_separation(point, substep_rate, separation_max);
+        }
+        if (is_known()) {
+            return;
+        }
+        make_axes();
+        LOCKWIND_UNROLL
+        for (std::uint32_t point = 0; point < points_; ++point) {
             make_normal_row(point);
         }
         find_friction_centre();
@@ -159,6 +167,8 @@ private:
     void load();
     void turn_back(const Vector rotation[9], const Vector orientation[4], Vector out[3]) const;
     void make_separation(std::uint32_t point, std::int32_t rate, std::int32_t separation_max);
+    bool is_known();
+    void make_axes();
     void fill_row(const Jacobian& jacobian, ContactBlock::Row& row);
     Jacobian jacobian_of(const Vector arm_a[3], const Vector arm_b[3], const Vector along[3]) const;
     void make_normal_row(std::uint32_t point);
@@ -169,6 +179,7 @@ private:
     void make_twist_row();
 
     const PairTerms& terms_;
+    RowInputs& inputs_;
     ContactBlock& block_;
     int first_;
     std::uint32_t points_;
@@ -201,17 +212,6 @@ void BlockPreparation<L>::load() {
     read_manifolds([](const Manifold& m) { return m.orientation_a; }, orientation_a_);
     read_manifolds([](const Manifold& m) { return m.orientation_b; }, orientation_b_);
     read_points([](const Manifold& m) { return m.anchor_a; }, anchor_a_);
-    cross(axes_[0], axes_[1], axes_[2]);
-    const auto narrow = [](Vector unit) {
-        constexpr int kShift = kUnitFraction - kCoefficientFraction;
-        return L::template shift_right<kShift>(L::add(unit, L::set(1 << (kShift - 1))));
-    };
-    LOCKWIND_UNROLL
-    for (int axis = 0; axis < 3; ++axis) {
-        set_lane(block_.normal[axis], narrow(axes_[0][axis]));
-        set_lane(block_.tangent[0][axis], narrow(axes_[1][axis]));
-        set_lane(block_.tangent[1][axis], narrow(axes_[2][axis]));
-    }
     share_a_ = lane(block_.share_a);
     share_b_ = lane(block_.share_b);
     LOCKWIND_UNROLL
@@ -285,6 +285,62 @@ void BlockPreparation<L>::make_separation(std::uint32_t point,
                                       L::template multiply<1>(open, L::set(50 * 64 * 2)));
     weight_[point] =
         of_point(point, L::clamp(weight, L::set(kCoefficientOne / 16), L::set(kCoefficientOne)));
+}
+
+/// Whether the block has the rows of these contacts; notes what they are made from. A single point's
+/// contact is made anew in every tick, as round shapes have it, and not worth the look.
+template <class L>
+bool BlockPreparation<L>::is_known() {
+    Vector difference = L::set(0);
+    std::uint32_t entry = 0;
+    const auto look = [&](Vector input) {
+        std::int32_t(&known)[kBlockLanes] = inputs_.entry[entry++];
+        difference = L::add_difference(difference, input, lane(known));
+        set_lane(known, input);
+    };
+    const auto look_at = [&](const Vector* inputs, std::uint32_t count) {
+        LOCKWIND_UNROLL
+        for (std::uint32_t index = 0; index < count; ++index) {
+            look(inputs[index]);
+        }
+    };
+    look(L::set(static_cast<std::int32_t>(points_)));
+    if (points_ == 1) {
+        return false;
+    }
+    look(lane(block_.point_count));
+    look_at(axes_[0], 3);
+    look_at(axes_[1], 3);
+    look_at(delta_when_made_, 3);
+    look_at(anchor_a_, 3 * points_);
+    look_at(weight_, points_);
+    look_at(body_a_ + 9, 7); // inertia and radius
+    look_at(body_b_ + 9, 7);
+    look(share_a_);
+    look(lane(block_.twist_lever_a));
+    look(lane(block_.twist_lever_b));
+    look(lane(terms_.inverse_radius_min));
+    look(lane(terms_.lever_max));
+    LOCKWIND_UNROLL
+    for (const auto& surface : terms_.surface_velocity) {
+        look(lane(surface));
+    }
+    return L::is_zero(difference);
+}
+
+template <class L>
+void BlockPreparation<L>::make_axes() {
+    cross(axes_[0], axes_[1], axes_[2]);
+    const auto narrow = [](Vector unit) {
+        constexpr int kShift = kUnitFraction - kCoefficientFraction;
+        return L::template shift_right<kShift>(L::add(unit, L::set(1 << (kShift - 1))));
+    };
+    LOCKWIND_UNROLL
+    for (int axis = 0; axis < 3; ++axis) {
+        set_lane(block_.normal[axis], narrow(axes_[0][axis]));
+        set_lane(block_.tangent[0][axis], narrow(axes_[1][axis]));
+        set_lane(block_.tangent[1][axis], narrow(axes_[2][axis]));
+    }
 }
 
 template <class L>

@@ -82,6 +82,14 @@ struct EightLanes {
         return each(
             [&](std::size_t lane) { return One::select_positive(value[lane], a[lane], b[lane]); });
     }
+    static Vector add_difference(const Vector& difference, const Vector& a, const Vector& b) {
+        return each([&](std::size_t lane) {
+            return One::add_difference(difference[lane], a[lane], b[lane]);
+        });
+    }
+    static bool is_zero(const Vector& a) {
+        return std::all_of(a.begin(), a.end(), [](auto value) { return One::is_zero(value); });
+    }
     static Wide zero() { return {}; }
     template <int Shift>
     static Wide start() {

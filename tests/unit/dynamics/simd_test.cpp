@@ -266,13 +266,81 @@ TEST_P(SimdTest, PreparesRandomContactsAsScalarLanesDo) {
         *other = *block;
         const std::int32_t rate = between(dice, 10, 3840);
         const std::int32_t separation_max = between(dice, 1, 4 << kLengthFraction);
-        scalar.prepare(pairs.terms, rate, separation_max, *block);
-        wide.prepare(pairs.terms, rate, separation_max, *other);
+        RowInputs inputs{};
+        scalar.prepare(pairs.terms, rate, separation_max, inputs, *block);
+        inputs = RowInputs{};
+        wide.prepare(pairs.terms, rate, separation_max, inputs, *other);
         for (int lane = 0; lane < kBlockLanes; ++lane) {
             ASSERT_NO_FATAL_FAILURE(expect_same_preparation(*block, *other, lane))
                 << "trial " << trial << ", lane " << lane;
         }
     }
+}
+
+/// Changes one of the things that a contact's rows are made from.
+void change_an_input(PairDraw& pairs, ContactBlock& block, Dice& dice) {
+    const auto lane = dice.below(kBlockLanes);
+    Manifold& manifold = pairs.manifolds[lane];
+    const auto body = [&]() -> BodyTerms& { return pairs.bodies[block.row_a[lane]]; };
+    const auto one_of = [&](auto& values) -> auto& {
+        return values[dice.below(std::size(values))];
+    };
+    std::int32_t& share_a = block.share_a[lane];
+    std::int32_t* const inputs[] = {&one_of(manifold.normal),
+                                    &one_of(manifold.tangent),
+                                    &one_of(manifold.centre_delta),
+                                    &one_of(manifold.anchor_a),
+                                    &one_of(manifold.separation),
+                                    &one_of(manifold.orientation_b),
+                                    &body().inverse_inertia()[dice.below(6)],
+                                    &body().inverse_gyration_radius(),
+                                    &body().rotation()[dice.below(9)],
+                                    &one_of(pairs.terms.centre_delta)[lane],
+                                    &one_of(pairs.terms.surface_velocity)[lane],
+                                    &pairs.terms.inverse_radius_min[lane],
+                                    &pairs.terms.lever_max[lane],
+                                    &block.twist_lever_a[lane],
+                                    &block.twist_lever_b[lane],
+                                    &share_a};
+    *inputs[dice.below(std::size(inputs))] ^= 1 << dice.below(20);
+    block.share_b[lane] = kCoefficientOne - share_a;
+}
+
+TEST_P(SimdTest, KeepsRowsThatAreMadeFromTheSameOnly) {
+    const ContactKernels kernels = contact_kernels(GetParam());
+    constexpr std::int32_t kRate = 240;
+    constexpr std::int32_t kSeparationMax = 4 << kLengthFraction;
+    Dice dice(13);
+    auto block = std::make_unique<ContactBlock>();
+    auto inputs = std::make_unique<RowInputs>();
+    int kept = 0;
+    for (int trial = 0; trial < 1000; ++trial) {
+        PairDraw pairs;
+        draw_block(*block, dice);
+        pairs.draw(*block, dice);
+        for (int lane = 0; lane < kBlockLanes; ++lane) {
+            block->share_b[lane] = kCoefficientOne - block->share_a[lane];
+        }
+        kernels.prepare(pairs.terms, kRate, kSeparationMax, *inputs, *block);
+        // A lane that is told not to be what it was made to is left alone.
+        std::swap(block->normal[0][0], block->normal[1][0]);
+        const std::int32_t swapped = block->normal[0][0];
+        kernels.prepare(pairs.terms, kRate, kSeparationMax, *inputs, *block);
+        kept += block->normal[0][0] == swapped ? 1 : 0;
+        std::swap(block->normal[0][0], block->normal[1][0]);
+        for (int change = 0; change < 10; ++change) {
+            change_an_input(pairs, *block, dice);
+            auto fresh = std::make_unique<ContactBlock>(*block);
+            RowInputs none{};
+            kernels.prepare(pairs.terms, kRate, kSeparationMax, *inputs, *block);
+            kernels.prepare(pairs.terms, kRate, kSeparationMax, none, *fresh);
+            for (int lane = 0; lane < kBlockLanes; ++lane) {
+                ASSERT_NO_FATAL_FAILURE(expect_same_preparation(*block, *fresh, lane))
+                    << "trial " << trial << ", lane " << lane;
+            }
+        }
+    }
+    EXPECT_GT(kept, 500) << "of blocks of several points";
 }
 
 TEST(Simd, TheBestOneIsAvailable) {

@@ -80,6 +80,11 @@ struct WideLanes {
         return hn::IfThenElse(hn::Gt(value, hn::Zero(Tag())), positive, other);
     }
 
+    static Vector add_difference(Vector difference, Vector a, Vector b) {
+        return hn::Or(difference, hn::Xor(a, b));
+    }
+    static bool is_zero(Vector a) { return hn::AllTrue(Tag(), hn::Eq(a, hn::Zero(Tag()))); }
+
     static Wide zero() { return {hn::Zero(SumTag()), hn::Zero(SumTag())}; }
     template <int Shift>
     static Wide start() {
