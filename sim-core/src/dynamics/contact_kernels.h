@@ -62,24 +62,25 @@ void visit_blocks(std::span<ContactBlock> blocks, SolverBody* bodies, Visit&& vi
 
 template <class L>
 ContactKernels kernels_of() {
-    return {[](const PairTerms& terms,
-               std::int32_t substep_rate,
-               std::int32_t separation_max,
-               RowInputs& inputs,
-               ContactBlock& block) {
-                for (int first = 0; first < block.lane_count; first += L::kWidth) {
-                    BlockPreparation<L>(terms, inputs, block, first).run(substep_rate, separation_max);
-                }
-            },
-            [](std::span<ContactBlock> blocks, SolverBody* bodies) {
-                visit_blocks<L>(blocks, bodies, [](auto& solver) { solver.warm_start(); });
-            },
-            [](std::span<ContactBlock> blocks, SolverBody* bodies) {
-                visit_blocks<L>(blocks, bodies, [](auto& solver) { solver.solve(); });
-            },
-            [](std::span<ContactBlock> blocks, SolverBody* bodies) {
-                visit_blocks<L>(blocks, bodies, [](auto& solver) { solver.relax(); });
-            }};
+    return {
+        [](const PairTerms& terms,
+           std::int32_t substep_rate,
+           std::int32_t separation_max,
+           RowInputs& inputs,
+           ContactBlock& block) {
+            for (int first = 0; first < block.lane_count; first += L::kWidth) {
+                BlockPreparation<L>(terms, inputs, block, first).run(substep_rate, separation_max);
+            }
+        },
+        [](std::span<ContactBlock> blocks, SolverBody* bodies) {
+            visit_blocks<L>(blocks, bodies, [](auto& solver) { solver.warm_start(); });
+        },
+        [](std::span<ContactBlock> blocks, SolverBody* bodies) {
+            visit_blocks<L>(blocks, bodies, [](auto& solver) { solver.solve(); });
+        },
+        [](std::span<ContactBlock> blocks, SolverBody* bodies) {
+            visit_blocks<L>(blocks, bodies, [](auto& solver) { solver.relax(); });
+        }};
 }
 
 } // namespace lockwind

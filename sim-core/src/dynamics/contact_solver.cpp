@@ -187,11 +187,8 @@ void ContactSolver::fill_blocks(const StepConstants& constants,
             reader.read(block, lane, terms);
         }
         fill_padding(bodies.padding_row(), block, terms);
-        kernels_.prepare(terms,
-                         constants.substep_rate,
-                         constants.separation_max,
-                         layout_.inputs(index),
-                         block);
+        kernels_.prepare(
+            terms, constants.substep_rate, constants.separation_max, layout_.inputs(index), block);
     }
 }
 

@@ -287,8 +287,8 @@ void BlockPreparation<L>::make_separation(std::uint32_t point,
         of_point(point, L::clamp(weight, L::set(kCoefficientOne / 16), L::set(kCoefficientOne)));
 }
 
-/// Whether the block has the rows of these contacts; notes what they are made from. A single point's
-/// contact is made anew in every tick, as round shapes have it, and not worth the look.
+/// Whether the block has the rows of these contacts; notes what they are made from. A single
+/// point's contact is made anew in every tick, as round shapes have it, and not worth the look.
 template <class L>
 bool BlockPreparation<L>::is_known() {
     Vector difference = L::set(0);

@@ -75,7 +75,12 @@ bool is_empty_or_near(const BodyMotion& motion, const BodyProperties& properties
     constexpr auto kSpeculative = static_cast<std::uint8_t>(CollisionMode::speculative);
     const std::int64_t slack =
         kFatBoundsSlack + (properties.collision_mode == kSpeculative ? kForesightSlack : 0);
-    const std::int64_t side_max = (std::int64_t{properties.bounding_radius} >> 5U) + (slack << 16U);
+    // A compound's bounds are as long to both sides, and so are its hulls', which lie beside its
+    // centre: their centres are within the radius, and their points within two of those.
+    const std::int64_t radii =
+        properties.shape == static_cast<std::uint8_t>(ShapeType::compound) ? 3 : 1;
+    const std::int64_t side_max =
+        radii * (std::int64_t{properties.bounding_radius} >> 5U) + (slack << 16U);
     for (int axis = 0; axis < 3; ++axis) {
         const std::int64_t side = std::int64_t{bounds->high[axis]} - bounds->low[axis];
         if (side < 0 || side > side_max) {

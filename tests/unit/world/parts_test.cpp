@@ -163,6 +163,37 @@ TEST_P(Parts, RefusesPartsThatAreNot) {
 
 INSTANTIATE_TEST_SUITE_P(Grounds, Parts, testing::Values(ShapeType::height_field, ShapeType::mesh));
 
+/// A hull that lies far to one side: its bounds, as long to both sides, go beyond the compound's
+/// radius.
+TEST(PartWorld, StateOfALopsidedCompoundCanBeLoaded) {
+    WorldDefinition scene;
+    HullDefinition nail;
+    for (const Vec3& point : {metres_of(5, 0, 0),
+                              metres_of(-0.5, 0, 0),
+                              metres_of(0, 0.7, 0),
+                              metres_of(0, -0.7, 0),
+                              metres_of(0, 0, 0.7),
+                              metres_of(0, 0, -0.7)}) {
+        nail.points.push_back(point);
+    }
+    scene.hulls = {nail};
+    CompoundDefinition hammer;
+    ShapeDefinition head;
+    head.type = ShapeType::sphere;
+    head.radius = 2;
+    ShapeDefinition handle;
+    handle.type = ShapeType::hull;
+    hammer.children = {{head, metres_of(5, 0, 0), {}, 1}, {handle, {}, {}, 1}};
+    scene.compounds = {hammer};
+    scene.bodies = {body_of(1, ShapeType::compound, metres_of(0, 5, 0))};
+    const WorldPtr world = make_world(scene);
+    step_idle(*world, 30);
+    std::vector<std::byte> state;
+    world->save(state);
+    const Status loaded = make_world(scene)->load(state);
+    EXPECT_TRUE(loaded.ok()) << loaded.error().message;
+}
+
 TEST(PartQueries, FindWhatABruteForceOverSimpleBodiesFinds) {
     // A compound's children as bodies of their own: every query must tell the same.
     QueryDraws draws(17);
