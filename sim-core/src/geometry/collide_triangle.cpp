@@ -132,38 +132,23 @@ Span TriangleCapsule::above_face() const {
 /// Of a segment that does not cross the triangle: an end, or a place on an edge.
 NearestPair TriangleCapsule::nearest() const {
     NearestPair best{std::numeric_limits<std::uint64_t>::max(), 0, {}};
-    const auto offer =
-        [&best](const std::int32_t gap[3], std::int32_t along, const TrianglePlace& place) {
-            const std::uint64_t square = squared_length(gap);
-            if (square < best.square) {
-                best = {square, along, place};
-            }
-        };
-    for (const std::int32_t along : {-segment_.half, segment_.half}) {
+    // The place always follows from the segment's point: of an edge and its corner that are as near
+    // but for rounding, the one over which that point lies.
+    const auto offer = [&](std::int32_t along) {
         std::int32_t point[3];
         std::int32_t gap[3];
         segment_.at(along, point);
         const TrianglePlace place = nearest_place(triangle_, point);
         gap_between(place.place, point, gap);
-        offer(gap, along, place);
-    }
+        const std::uint64_t square = squared_length(gap);
+        if (square < best.square) {
+            best = {square, along, place};
+        }
+    };
+    offer(-segment_.half);
+    offer(segment_.half);
     for (int edge = 0; edge < 3; ++edge) {
-        const Segments s = segment_.with_edge(triangle_, edge);
-        const NearestOnA nearest = nearest_of(s);
-        const std::int32_t on_edge = nearest_on_b(s, nearest.along);
-        std::int32_t point[3];
-        std::int32_t gap[3];
-        segment_.at(nearest.along, point);
-        between(s, nearest.along, on_edge, gap);
-        TrianglePlace place{{}, TrianglePlace::Feature::edge, edge};
-        if (magnitude(on_edge) >= s.half_b) {
-            place.feature = TrianglePlace::Feature::corner;
-            place.index = on_edge < 0 ? edge : (edge + 1) % 3;
-        }
-        for (int axis = 0; axis < 3; ++axis) {
-            place.place[axis] = raw_saturate<std::int32_t>(std::int64_t{point[axis]} + gap[axis]);
-        }
-        offer(gap, nearest.along, place);
+        offer(nearest_of(segment_.with_edge(triangle_, edge)).along);
     }
     return best;
 }

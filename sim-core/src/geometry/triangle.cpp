@@ -108,24 +108,24 @@ TrianglePlace nearest_place(const Triangle& triangle, const std::int32_t point[3
         const TriangleEdge& edge = triangle.edges[index];
         const std::int32_t* from = triangle.corners[index];
         const std::int64_t along = round_unit_wide(dot_between(edge.direction, from, point));
-        TrianglePlace found{{}, TrianglePlace::Feature::edge, index};
-        if (along <= 0 || along >= edge.length) {
-            found.feature = TrianglePlace::Feature::corner;
-            found.index = along <= 0 ? index : (index + 1) % 3;
-            std::copy(
-                triangle.corners[found.index], triangle.corners[found.index] + 3, found.place);
-        } else {
+        if (along > 0 && along < edge.length) {
+            // Nothing is nearer: not to be compared with a corner, from which a point just beside
+            // it is as far but for rounding.
+            TrianglePlace found{{}, TrianglePlace::Feature::edge, index};
             for (int axis = 0; axis < 3; ++axis) {
                 found.place[axis] = from[axis] + round_unit(along * edge.direction[axis]);
             }
+            return found;
         }
+        const int corner = along <= 0 ? index : (index + 1) % 3;
+        const std::int32_t* at = triangle.corners[corner];
         std::int32_t gap[3];
         for (int axis = 0; axis < 3; ++axis) {
-            gap[axis] = raw_saturate<std::int32_t>(std::int64_t{point[axis]} - found.place[axis]);
+            gap[axis] = raw_saturate<std::int32_t>(std::int64_t{point[axis]} - at[axis]);
         }
         if (squared_length(gap) < least) {
             least = squared_length(gap);
-            best = found;
+            best = {{at[0], at[1], at[2]}, TrianglePlace::Feature::corner, corner};
         }
     }
     if (best.feature == TrianglePlace::Feature::face) {

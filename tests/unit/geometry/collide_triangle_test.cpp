@@ -118,6 +118,46 @@ TEST(CollideTriangle, CapsuleTouchesWhereItIsNear) {
     EXPECT_GT(lying, 100);
 }
 
+/// A point just beside the line over which a corner's outside and an edge's meet, as near to both
+/// but for rounding; it lies off the triangle by `distance`.
+Vec beside_corner(Random& random, const Surface& surface, double distance) {
+    const auto edge = static_cast<std::uint32_t>(random.bits() % 3);
+    const Vec from = corner_of(surface, 0, edge);
+    const Vec way = corner_of(surface, 0, (edge + 1) % 3) - from;
+    const Vec along = way * (1 / length(way));
+    const Vec normal = unit(surface.triangle(0).normal);
+    const double angle = random.uniform(0.01, 1.56);
+    const Vec off = cross(along, normal) * std::cos(angle) + normal * std::sin(angle);
+    const Vec end = random.bits() % 2 == 0 ? from : from + way;
+    return end + along * random.uniform(-0.0008, 0.0008) + off * distance;
+}
+
+TEST(CollideTriangle, RoundShapesTouchWhereAnEdgeEndsInACorner) {
+    // Feature and direction must be of one place: the corner's with the edge's point lay in
+    // neither's cone, and six capsules of a million touched nothing.
+    Random random(40);
+    for (int round = 0; round < 20000; ++round) {
+        const Surface surface = lone_triangle(random, 2);
+        const double distance = random.uniform(0.1, 0.5);
+        const Vec end = beside_corner(random, surface, distance);
+        const double gap = point_surface(end, surface) - distance;
+        const auto ball = touch_all(surface, Body::sphere(distance), end);
+        ASSERT_EQ(ball.size(), 1U) << round;
+        EXPECT_NEAR(lowest_separation(ball), gap, 5e-6);
+        // A capsule that leads away from there: its end is nearest.
+        const Vec normal = unit(surface.triangle(0).normal);
+        Body capsule = Body::capsule(distance, random.uniform(0.05, 1));
+        do {
+            capsule.turn(random.direction(), random.uniform(0, 3.14));
+        } while (dot(capsule.axis(1), normal) < 0.3);
+        const Vec place = end + capsule.axis(1) * capsule.extent(1);
+        const double capsule_gap = capsule_distance(surface, capsule, place) - distance;
+        const auto contacts = touch_all(surface, capsule, place);
+        ASSERT_EQ(contacts.size(), 1U) << round;
+        EXPECT_NEAR(lowest_separation(contacts), capsule_gap, kSlop + 1e-5);
+    }
+}
+
 /// A pyramid under a triangle that is not wider anywhere: as near as the triangle is to what lies
 /// above it.
 Solid solid_under(const Surface& surface) {
