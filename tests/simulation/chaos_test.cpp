@@ -1,3 +1,4 @@
+#include "tests/simulation/draws.h"
 #include "tests/simulation/measures.h"
 
 #include <gtest/gtest.h>
@@ -13,30 +14,6 @@ constexpr double kPit = 25; // m from the middle to each wall
 constexpr int kBodies = 24;
 constexpr int kTicks = 600;
 constexpr double kPushOut = 3; // m/s, the fastest that overlaps come apart
-
-/// Draws of one scene.
-class Draws {
-public:
-    explicit Draws(std::uint64_t seed) : seed_(seed) {}
-    double uniform(double low, double high) {
-        return low + (high - low) * to_double(random_unit(seed_, 1, counter_++));
-    }
-    /// Every magnitude alike.
-    double scale(double low, double high) {
-        return std::exp(uniform(std::log(low), std::log(high)));
-    }
-    Vector direction() {
-        const double y = uniform(-1, 1);
-        const double angle = uniform(0, 2 * std::numbers::pi);
-        const double across = std::sqrt(1 - y * y);
-        return {across * std::cos(angle), y, across * std::sin(angle)};
-    }
-    bool chance(double part) { return uniform(0, 1) < part; }
-
-private:
-    std::uint64_t seed_;
-    std::uint64_t counter_ = 0;
-};
 
 /// Reach of 0.05 to 5 m, no side below a fifth of it.
 ShapeDefinition random_shape(Draws& draws) {

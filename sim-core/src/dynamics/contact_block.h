@@ -92,7 +92,7 @@ struct alignas(64) ContactBlock {
 /// What a block's rows were made from, in the order of BlockPreparation::is_known(): all that they
 /// depend on. A block that comes to hold the same contacts again, made from the same, has its rows.
 struct alignas(64) RowInputs {
-    std::int32_t entry[34 + 4 * kBlockPoints][kBlockLanes];
+    std::int32_t entry[36 + 4 * kBlockPoints][kBlockLanes];
 };
 
 /// Index into `coupling` of points (row, column), column < row.

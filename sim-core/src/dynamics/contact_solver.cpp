@@ -104,6 +104,8 @@ void PairReader::read(ContactBlock& block, int lane, PairTerms& terms) const {
         b.mode == kFixed ? 0 : radius_ratio(smaller.gyration_radius, b.gyration_radius);
     terms.inverse_radius_min[lane] = smaller.inverse_gyration_radius;
     terms.lever_max[lane] = saturate(std::int64_t{smaller.gyration_radius} * 15 / 2);
+    terms.slender_a[lane] = bodies.is_slender(row_a) ? 1 : 0;
+    terms.slender_b[lane] = bodies.is_slender(row_b) ? 1 : 0;
     const Softness& softness =
         a_moves && b_moves ? constants.dynamic_softness : constants.static_softness;
     block.mass_scale[lane] = softness.mass_scale;
@@ -136,6 +138,8 @@ void fill_padding(BodyRow padding_row, ContactBlock& block, PairTerms& terms) {
         }
         terms.inverse_radius_min[lane] = 0;
         terms.lever_max[lane] = 0;
+        terms.slender_a[lane] = 0;
+        terms.slender_b[lane] = 0;
         block.share_a[lane] = 0;
         block.share_b[lane] = 0;
         block.friction[lane] = 0;

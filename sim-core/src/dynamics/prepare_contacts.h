@@ -4,6 +4,7 @@
 #include "dynamics/contact_block.h"
 #include "dynamics/lanes.h"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace lockwind {
@@ -17,6 +18,8 @@ struct PairTerms {
     std::int32_t surface_velocity[3][kBlockLanes]; // Q11.20 m/s, world: B's less A's
     std::int32_t inverse_radius_min[kBlockLanes];  // Q7.24 1/m: of the smaller gyration radius
     std::int32_t lever_max[kBlockLanes];           // Q9.22 m: 7.5 of the smaller gyration radius
+    std::int32_t slender_a[kBlockLanes];           // 1 or 0, see is_slender()
+    std::int32_t slender_b[kBlockLanes];
 };
 
 /// Fills the rows of a block from its contacts' manifolds and bodies: normal rows, their couplings,
@@ -31,7 +34,8 @@ public:
     BlockPreparation(const PairTerms& terms, RowInputs& inputs, ContactBlock& block, int first)
         : terms_(terms), inputs_(inputs), block_(block), first_(first),
           points_(static_cast<std::uint32_t>(L::kWidth == 1 ? block.point_count[first]
-                                                            : block.point_count_max)) {}
+                                                            : block.point_count_max)),
+          is_any_slender_(any(terms.slender_a) || any(terms.slender_b)) {}
 
     void run(std::int32_t substep_rate, std::int32_t separation_max) {
         load();
@@ -53,7 +57,6 @@ public:
         make_levers();
         make_tangent_row(0);
         make_tangent_row(1);
-        make_tangent_coupling();
         make_twist_row();
     }
 
@@ -89,6 +92,13 @@ private:
         const Vector exists =
             L::subtract(lane(block_.point_count), L::set(static_cast<std::int32_t>(point)));
         return L::select_positive(exists, value, L::set(0));
+    }
+
+    /// Whether one of this preparation's lanes is set.
+    bool any(const std::int32_t (&lanes)[kBlockLanes]) const {
+        return std::any_of(lanes + first_, lanes + first_ + L::kWidth, [](std::int32_t lane) {
+            return lane != 0;
+        });
     }
 
     static Wide add_dot(Wide sum, const Vector a[3], const Vector b[3]) {
@@ -159,6 +169,16 @@ private:
             L::maximum(k, least));
     }
 
+    /// How fast a row's impulse of one drives another, Q8.56; without what the linear parts add.
+    Wide couple(const Jacobian& jacobian, const ContactBlock::Row& row, Wide sum) const {
+        LOCKWIND_UNROLL
+        for (int axis = 0; axis < 3; ++axis) {
+            sum = L::add_product(sum, jacobian.a[axis], lane(row.response_a[axis]));
+            sum = L::add_product(sum, jacobian.b[axis], lane(row.response_b[axis]));
+        }
+        return sum;
+    }
+
     // The parts of BodyTerms.
     static const Vector* rotation(const Vector* body) { return body; }
     static const Vector* inertia(const Vector* body) { return body + 9; }
@@ -170,12 +190,16 @@ private:
     bool is_known();
     void make_axes();
     void fill_row(const Jacobian& jacobian, ContactBlock::Row& row);
+    void hold_arm(const Vector body[kBodyTermCount],
+                  Vector slender,
+                  const Vector along[3],
+                  Vector arm[3]) const;
+    void hold_coupling(const ContactBlock::Row& other, Jacobian& jacobian) const;
     Jacobian jacobian_of(const Vector arm_a[3], const Vector arm_b[3], const Vector along[3]) const;
     void make_normal_row(std::uint32_t point);
     void find_friction_centre();
     void make_levers();
     void make_tangent_row(int which);
-    void make_tangent_coupling();
     void make_twist_row();
 
     const PairTerms& terms_;
@@ -183,6 +207,7 @@ private:
     ContactBlock& block_;
     int first_;
     std::uint32_t points_;
+    bool is_any_slender_;
 
     Vector axes_[3][4]; // normal, first tangent, second tangent, Q2.30; xyz and what lies behind
     Vector delta_when_made_[4];
@@ -321,6 +346,8 @@ bool BlockPreparation<L>::is_known() {
     look(lane(block_.twist_lever_b));
     look(lane(terms_.inverse_radius_min));
     look(lane(terms_.lever_max));
+    look(lane(terms_.slender_a));
+    look(lane(terms_.slender_b));
     LOCKWIND_UNROLL
     for (const auto& surface : terms_.surface_velocity) {
         look(lane(surface));
@@ -343,16 +370,89 @@ void BlockPreparation<L>::make_axes() {
     }
 }
 
+/// Shortens a slender body's arm until |arm| / radius and |response| are at most 7.74, so that no
+/// sum of a row's products leaves the formats. It stays a row of such a body, J and M^-1 J^T of a
+/// shorter arm, which gives no energy. Bodies that lie deep in each other, or have turned since
+/// their manifold was made, have longer ones; others keep theirs to the bit.
+template <class L>
+void BlockPreparation<L>::hold_arm(const Vector body[kBodyTermCount],
+                                   Vector slender,
+                                   const Vector along[3],
+                                   Vector arm[3]) const {
+    constexpr int kProbe = 16;                                    // binary places
+    constexpr int kSquare = 12;                                   // of squares
+    constexpr std::int32_t kInverseSquare = kCoefficientOne / 60; // 1 / 7.74^2
+    const Vector most = L::set((128 << kProbe) - 1);
+    const auto bounded = [&](Vector value) { return L::clamp(value, L::negate(most), most); };
+    Vector scaled[3];
+    Vector row[3];
+    Vector response[3];
+    LOCKWIND_UNROLL
+    for (int axis = 0; axis < 3; ++axis) {
+        scaled[axis] =
+            bounded(L::template multiply<kLengthFraction + kEffectiveMassFraction - kProbe>(
+                arm[axis], inverse_radius(body)));
+    }
+    cross(scaled, along, row);
+    respond(inertia(body), row, L::set(kCoefficientOne), response);
+    LOCKWIND_UNROLL
+    for (Vector& entry : response) {
+        entry = bounded(entry);
+    }
+    const Vector square = L::maximum(dot<2 * kProbe - kSquare>(scaled, scaled),
+                                     dot<2 * kProbe - kSquare>(response, response));
+    const Vector excess = L::template multiply<kCoefficientFraction>(
+        L::select_positive(slender, square, L::set(0)), L::set(kInverseSquare));
+    const Vector ratio =
+        L::root(L::add_product(L::zero(), excess, L::set(1 << (2 * kProbe - kSquare))));
+    const Vector shorter =
+        L::template reciprocal<kProbe + kUnitFraction>(L::maximum(ratio, L::set(1 << kProbe)));
+    LOCKWIND_UNROLL
+    for (int axis = 0; axis < 3; ++axis) {
+        arm[axis] = L::template multiply<kUnitFraction>(arm[axis], shorter);
+    }
+}
+
+/// Shortens a slender body's arms until the row's coupling with another is at most 6.9, one more
+/// being a normal row's linear part.
+template <class L>
+void BlockPreparation<L>::hold_coupling(const ContactBlock::Row& other, Jacobian& jacobian) const {
+    constexpr int kShift = 2 * kCoefficientFraction - kEffectiveMassFraction;
+    constexpr std::int32_t kMost = std::int64_t{69} * (1 << kEffectiveMassFraction) / 10;
+    const Vector coupling =
+        L::template round<kShift>(couple(jacobian, other, L::template start<kShift>()));
+    const Vector size = L::maximum(coupling, L::negate(coupling));
+    const Vector slender = L::add(lane(terms_.slender_a), lane(terms_.slender_b));
+    const Vector excess = L::select_positive(slender, L::subtract(size, L::set(kMost)), L::set(0));
+    const Vector inverse = L::template reciprocal<kEffectiveMassFraction + kUnitFraction>(
+        L::maximum(size, L::set(kMost)));
+    const Vector shorter =
+        L::select_positive(excess,
+                           L::template multiply<kEffectiveMassFraction>(inverse, L::set(kMost)),
+                           L::set(kUnitOne));
+    LOCKWIND_UNROLL
+    for (int axis = 0; axis < 3; ++axis) {
+        jacobian.a[axis] = L::template multiply<kUnitFraction>(jacobian.a[axis], shorter);
+        jacobian.b[axis] = L::template multiply<kUnitFraction>(jacobian.b[axis], shorter);
+    }
+}
+
 template <class L>
 typename BlockPreparation<L>::Jacobian BlockPreparation<L>::jacobian_of(
     const Vector arm_a[3], const Vector arm_b[3], const Vector along[3]) const {
+    Vector held_a[3] = {arm_a[0], arm_a[1], arm_a[2]};
+    Vector held_b[3] = {arm_b[0], arm_b[1], arm_b[2]};
+    if (is_any_slender_) {
+        hold_arm(body_a_, lane(terms_.slender_a), along, held_a);
+        hold_arm(body_b_, lane(terms_.slender_b), along, held_b);
+    }
     Jacobian jacobian;
-    lever_row(arm_a, inverse_radius(body_a_), along, jacobian.a);
+    lever_row(held_a, inverse_radius(body_a_), along, jacobian.a);
     LOCKWIND_UNROLL
     for (Vector& entry : jacobian.a) {
         entry = L::negate(entry);
     }
-    lever_row(arm_b, inverse_radius(body_b_), along, jacobian.b);
+    lever_row(held_b, inverse_radius(body_b_), along, jacobian.b);
     return jacobian;
 }
 
@@ -376,7 +476,10 @@ void BlockPreparation<L>::fill_row(const Jacobian& jacobian, ContactBlock::Row& 
 
 template <class L>
 void BlockPreparation<L>::make_normal_row(std::uint32_t point) {
-    const Jacobian jacobian = jacobian_of(arm_a_[point], arm_b_[point], axes_[0]);
+    Jacobian jacobian = jacobian_of(arm_a_[point], arm_b_[point], axes_[0]);
+    for (std::uint32_t other = 0; is_any_slender_ && other < point; ++other) {
+        hold_coupling(block_.point[other].row, jacobian);
+    }
     fill_row(jacobian, block_.point[point].row);
     if constexpr (L::kWidth > 1) {
         // Without mass a row never gains an impulse.
@@ -385,13 +488,8 @@ void BlockPreparation<L>::make_normal_row(std::uint32_t point) {
     }
     LOCKWIND_UNROLL
     for (std::uint32_t other = 0; other < point; ++other) {
-        const ContactBlock::Row& row = block_.point[other].row;
-        Wide sum = L::template start<kCoefficientFraction>();
-        LOCKWIND_UNROLL
-        for (int axis = 0; axis < 3; ++axis) {
-            sum = L::add_product(sum, jacobian.a[axis], lane(row.response_a[axis]));
-            sum = L::add_product(sum, jacobian.b[axis], lane(row.response_b[axis]));
-        }
+        const Wide sum =
+            couple(jacobian, block_.point[other].row, L::template start<kCoefficientFraction>());
         const int index = coupling_index(static_cast<int>(point), static_cast<int>(other));
         set_lane(block_.coupling[index],
                  L::add(L::set(kCoefficientOne), L::template round<kCoefficientFraction>(sum)));
@@ -447,24 +545,20 @@ void BlockPreparation<L>::make_levers() {
 
 template <class L>
 void BlockPreparation<L>::make_tangent_row(int which) {
-    fill_row(jacobian_of(centre_a_, centre_b_, axes_[1 + which]), block_.tangent_row[which]);
+    Jacobian jacobian = jacobian_of(centre_a_, centre_b_, axes_[1 + which]);
+    if (which == 1) {
+        const ContactBlock::Row& first = block_.tangent_row[0];
+        if (is_any_slender_) {
+            hold_coupling(first, jacobian);
+        }
+        const Wide sum = couple(jacobian, first, L::template start<kCoefficientFraction>());
+        set_lane(block_.tangent_coupling, L::template round<kCoefficientFraction>(sum));
+    }
+    fill_row(jacobian, block_.tangent_row[which]);
     const Vector surface[3] = {lane(terms_.surface_velocity[0]),
                                lane(terms_.surface_velocity[1]),
                                lane(terms_.surface_velocity[2])};
     set_lane(block_.surface_speed[which], dot<kUnitFraction>(axes_[1 + which], surface));
-}
-
-template <class L>
-void BlockPreparation<L>::make_tangent_coupling() {
-    const ContactBlock::Row& first = block_.tangent_row[0];
-    const ContactBlock::Row& second = block_.tangent_row[1];
-    Wide sum = L::template start<kCoefficientFraction>();
-    LOCKWIND_UNROLL
-    for (int axis = 0; axis < 3; ++axis) {
-        sum = L::add_product(sum, lane(second.jacobian_a[axis]), lane(first.response_a[axis]));
-        sum = L::add_product(sum, lane(second.jacobian_b[axis]), lane(first.response_b[axis]));
-    }
-    set_lane(block_.tangent_coupling, L::template round<kCoefficientFraction>(sum));
 }
 
 template <class L>

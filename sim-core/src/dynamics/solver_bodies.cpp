@@ -48,11 +48,24 @@ void read_terms(const BodyFrame& frame, const BodyProperties& body, BodyTerms& t
     }
 }
 
+/// An arm of 1.5 bounding radii may give it a row with a response of more than 7.75.
+bool may_overreach(const BodyProperties& body) {
+    if (body.mode != kDynamic) {
+        return false;
+    }
+    const std::int64_t ratio = *std::max_element(body.inverse_inertia, body.inverse_inertia + 3);
+    const std::int64_t leverage = raw_saturate<std::int32_t>(round_shift(
+        std::int64_t{body.bounding_radius} * body.inverse_gyration_radius, kLengthFraction));
+    constexpr std::int64_t kMost = // 7.75 / 1.5
+        (std::int64_t{31} << (kEffectiveMassFraction + kInertiaFraction)) / 6;
+    return leverage * ratio > kMost;
+}
+
 } // namespace
 
 SolverBodies::SolverBodies(std::uint32_t capacity)
     : padding_row_(capacity), bodies_(std::size_t{capacity} + 1), terms_(capacity),
-      courses_(capacity), speed_bound_(capacity) {
+      courses_(capacity), speed_bound_(capacity), slender_(capacity) {
     dynamic_rows_.reserve(capacity);
     kinematic_rows_.reserve(capacity);
 }
@@ -66,10 +79,12 @@ void SolverBodies::read(const StepConstants& constants,
     for (const BodyRow row : activity.rows()) {
         const BodyProperties& body = tables.properties[row];
         read_terms(frames[row], body, terms_[row]);
+        slender_[row] = may_overreach(body) ? 1 : 0;
         read_body(constants, tables.motion[row], body, row);
     }
     for (const BodyRow row : activity.partners()) {
         read_terms(frames[row], tables.properties[row], terms_[row]);
+        slender_[row] = may_overreach(tables.properties[row]) ? 1 : 0;
         bodies_[row] = SolverBody{}; // at rest, and not to be moved
         speed_bound_[row] = 0;
     }

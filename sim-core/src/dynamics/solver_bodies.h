@@ -63,6 +63,8 @@ public:
         return bodies_[row == kNoIndex ? padding_row_ : row];
     }
     const BodyTerms& terms(BodyRow row) const { return terms_[row]; }
+    /// Whether an arm half as long again as the body may leave the formats of a contact's rows.
+    bool is_slender(BodyRow row) const { return slender_[row] != 0; }
     /// Q11.20 m/s at the tick's start, of any point of the body.
     std::int32_t speed_bound(BodyRow row) const { return speed_bound_[row]; }
 
@@ -86,6 +88,7 @@ private:
     std::vector<BodyTerms> terms_;
     std::vector<Course> courses_;
     std::vector<std::int32_t> speed_bound_;
+    std::vector<std::uint8_t> slender_;
     std::vector<BodyRow> dynamic_rows_;
     std::vector<BodyRow> kinematic_rows_;
 };
