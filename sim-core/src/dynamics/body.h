@@ -3,6 +3,7 @@
 #include "lockwind/schema.h"
 #include "lockwind/types.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -52,6 +53,14 @@ struct BodyProperties {
     std::uint8_t zero_end;            // int64 is aligned to 8 on some machines
 };
 static_assert(sizeof(BodyProperties) == 80);
+
+/// rho^2 m / I, Q5.26: from here on a body is so slender that its contacts take care of its twist
+/// and turn.
+inline constexpr std::int32_t kVerySlender = 8 << 26;
+inline bool is_very_slender(const BodyProperties& body) {
+    return std::max({body.inverse_inertia[0], body.inverse_inertia[1], body.inverse_inertia[2]}) >=
+           kVerySlender;
+}
 
 /// What else a body has to itself: row of "body_life", same row as its BodyMotion.
 struct BodyLife {

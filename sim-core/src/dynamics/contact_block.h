@@ -29,6 +29,7 @@ struct BodyTerms {
         return entry + 9;
     } // xx xy xz yy yz zz, world, Q5.26;
       // 0 unless dynamic
+    const std::int32_t* inverse_inertia() const { return entry + 9; }
     std::int32_t& inverse_gyration_radius() { return entry[15]; } // Q7.24; 0 of a fixed body
 };
 

@@ -49,6 +49,11 @@ std::int32_t radius_ratio(std::int32_t radius_min, std::int32_t radius) {
     return static_cast<std::int32_t>(std::min(ratio, std::int64_t{4} << kCoefficientFraction));
 }
 
+/// Q7.24 1/m, of a radius of at least 1/127 m / 4.
+std::int32_t inverse_radius(std::int32_t radius) {
+    return saturate((std::int64_t{1} << (kLengthFraction + kEffectiveMassFraction)) / radius);
+}
+
 /// World, Q11.20 m/s. A sphere's frame does not turn with it: its surface velocity is the world's.
 void read_surface(const BodyFrame& frame, const BodyProperties& body, std::int32_t out[3]) {
     const std::int32_t* local = body.surface_velocity;
@@ -57,6 +62,26 @@ void read_surface(const BodyFrame& frame, const BodyProperties& body, std::int32
     } else {
         rotate(frame.rotation, local, out);
     }
+}
+
+/// Q9.22 m: the length, at most `radius`, by which a twist row is scaled so that its response on a
+/// body stays below 7.5.
+std::int32_t twist_radius(std::int32_t radius,
+                          const BodyProperties& body,
+                          const BodyTerms& terms,
+                          const std::int32_t normal[3]) {
+    if (body.mode != kDynamic || !is_very_slender(body)) {
+        return radius;
+    }
+    const std::int32_t* i = terms.inverse_inertia();
+    const std::int32_t rows[3][3] = {{i[0], i[1], i[2]}, {i[1], i[3], i[4]}, {i[2], i[4], i[5]}};
+    std::int64_t response = 1;
+    for (const auto& row : rows) {
+        response = std::max(response, magnitude(round_unit_wide(dot_wide(row, normal))));
+    }
+    constexpr std::int64_t kMost = std::int64_t{15} << (kInertiaFraction - 1);
+    return static_cast<std::int32_t>(
+        std::min<std::int64_t>(radius, kMost * body.gyration_radius / response));
 }
 
 /// What a contact's lane is made from.
@@ -98,12 +123,14 @@ void PairReader::read(ContactBlock& block, int lane, PairTerms& terms) const {
     block.friction[lane] = combine(a.friction, b.friction, a.friction_rule, b.friction_rule);
     const bool a_is_smaller = a_moves && (!b_moves || a.gyration_radius <= b.gyration_radius);
     const BodyProperties& smaller = a_is_smaller ? a : b;
-    block.twist_lever_a[lane] =
-        a.mode == kFixed ? 0 : -radius_ratio(smaller.gyration_radius, a.gyration_radius);
-    block.twist_lever_b[lane] =
-        b.mode == kFixed ? 0 : radius_ratio(smaller.gyration_radius, b.gyration_radius);
-    terms.inverse_radius_min[lane] = smaller.inverse_gyration_radius;
-    terms.lever_max[lane] = saturate(std::int64_t{smaller.gyration_radius} * 15 / 2);
+    std::int32_t twist =
+        twist_radius(smaller.gyration_radius, a, bodies.terms(row_a), manifold.normal);
+    twist = twist_radius(twist, b, bodies.terms(row_b), manifold.normal);
+    block.twist_lever_a[lane] = a.mode == kFixed ? 0 : -radius_ratio(twist, a.gyration_radius);
+    block.twist_lever_b[lane] = b.mode == kFixed ? 0 : radius_ratio(twist, b.gyration_radius);
+    terms.inverse_radius_min[lane] =
+        twist == smaller.gyration_radius ? smaller.inverse_gyration_radius : inverse_radius(twist);
+    terms.lever_max[lane] = saturate(std::int64_t{twist} * 15 / 2);
     terms.slender_a[lane] = bodies.is_slender(row_a) ? 1 : 0;
     terms.slender_b[lane] = bodies.is_slender(row_b) ? 1 : 0;
     const Softness& softness =

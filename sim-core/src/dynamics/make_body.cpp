@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -229,22 +230,27 @@ std::int64_t arm_about(const ShapeDefinition& shape,
     return shape.type == ShapeType::capsule && axis == 1 ? size[0] : properties.bounding_radius;
 }
 
-/// rho = (k_min k_max)^(1/4), rho^2 / k_i, with k = I / m.
-void fill_inertia(const ShapeDefinition& shape,
-                  const Build& build,
-                  BodyProperties& properties,
-                  DefinitionChecker& checker) {
-    const UnitInertia inertia = build ? build->inertia : unit_inertia(shape.type, properties.size);
-    const auto moment = [&](int axis) {
-        return static_cast<std::uint64_t>(inertia.moment[axis].raw());
-    };
-    const std::uint64_t least = std::min({moment(0), moment(1), moment(2)});
-    const std::uint64_t most = std::max({moment(0), moment(1), moment(2)});
+/// Of a body with k = I / m, Q.44 m^2.
+struct InertiaTerms {
+    std::int64_t moment[3];
+    std::int64_t arm[3]; // Q9.22 m: of the farthest surface point from each axis
+};
+
+/// rho^2 / k, Q5.26.
+std::int64_t inverse_inertia_of(std::int64_t rho, std::int64_t k) {
+    constexpr std::int64_t kTwice = std::int64_t{2} << InverseInertia::kFraction;
+    return (multiply_divide(rho * rho, kTwice, k) + 1) >> 1;
+}
+
+/// With rho = (k_min k_max)^(1/4), which makes levers and responses about as large. False where a
+/// contact's row may leave its format; nothing is set then but the gyration radius.
+bool fill_balanced(const InertiaTerms& terms, BodyProperties& properties) {
+    const auto [least, most] = std::minmax_element(terms.moment, terms.moment + 3);
     set_gyration_radius(
-        static_cast<std::int64_t>(floor_sqrt(floor_sqrt128(multiply_wide(least, most)))),
+        static_cast<std::int64_t>(floor_sqrt(floor_sqrt128(
+            multiply_wide(static_cast<std::uint64_t>(*least), static_cast<std::uint64_t>(*most))))),
         properties);
     const std::int64_t rho = properties.gyration_radius;
-    constexpr std::int64_t kTwice = std::int64_t{2} << InverseInertia::kFraction;
     // A contact point may lie off the surface by half its separation: half the margin, or for a
     // point that comes along, which weighs little in friction, a quarter of the longest half axis.
     constexpr std::int64_t kOff = kSpeculativeMargin >> 1;
@@ -254,15 +260,50 @@ void fill_inertia(const ShapeDefinition& shape,
     };
     bool bearable = is_bearable(radius + (radius >> 2) + kOff, 1, rho);
     for (int axis = 0; axis < 3; ++axis) {
-        const auto k = static_cast<std::int64_t>(moment(axis));
-        const std::int64_t ratio = (multiply_divide(rho * rho, kTwice, k) + 1) >> 1;
-        const std::int64_t arm = arm_about(shape, build, properties, axis) + radius / 24 + kOff;
-        // A twist about the axis has this response.
-        constexpr std::int64_t kRatioMax = std::int64_t{8} << InverseInertia::kFraction;
-        bearable = bearable && is_bearable(arm, rho, k) && ratio < kRatioMax;
+        const std::int64_t k = terms.moment[axis];
+        const std::int64_t ratio = inverse_inertia_of(rho, k);
+        bearable = bearable && is_bearable(terms.arm[axis] + radius / 24 + kOff, rho, k) &&
+                   ratio < kVerySlender;
         properties.inverse_inertia[axis] = raw_saturate<std::int32_t>(ratio);
     }
-    checker.require(bearable, "shape", "is too slender; it may be about 10 times as long as thick");
+    return bearable;
+}
+
+/// Of longer bodies: rho just long enough for the levers of their ends, and moments large enough
+/// for the responses of their sides. A capsule or square bar of up to 24 times its thickness keeps
+/// its true moments; about its long axis a longer or flat one is harder to turn, by less than
+/// twice. False where that does not do. `hold_arm` of the contacts takes the points off the
+/// surface.
+bool fill_slender(const InertiaTerms& terms, BodyProperties& properties) {
+    set_gyration_radius(std::max<std::int64_t>(properties.gyration_radius,
+                                               std::int64_t{properties.bounding_radius} * 9 / 64),
+                        properties);
+    const std::int64_t rho = properties.gyration_radius;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::int64_t bearable = terms.arm[axis] * rho * 8 / 59; // a response of 7.375
+        const std::int64_t k = std::max(terms.moment[axis], bearable);
+        const std::int64_t ratio = inverse_inertia_of(rho, k);
+        if (k > 2 * terms.moment[axis] || ratio > std::numeric_limits<std::int32_t>::max()) {
+            return false;
+        }
+        properties.inverse_inertia[axis] = static_cast<std::int32_t>(ratio);
+    }
+    return true;
+}
+
+void fill_inertia(const ShapeDefinition& shape,
+                  const Build& build,
+                  BodyProperties& properties,
+                  DefinitionChecker& checker) {
+    const UnitInertia inertia = build ? build->inertia : unit_inertia(shape.type, properties.size);
+    InertiaTerms terms{};
+    for (int axis = 0; axis < 3; ++axis) {
+        terms.moment[axis] = inertia.moment[axis].raw();
+        terms.arm[axis] = arm_about(shape, build, properties, axis);
+    }
+    checker.require(fill_balanced(terms, properties) || fill_slender(terms, properties),
+                    "shape",
+                    "is too slender; it may be about 30 times as long as wide");
 }
 
 void fill_mass(const BodyDefinition& definition,

@@ -226,6 +226,12 @@ bool is_touching(const Pair& pair) {
     return pair.point_count != 0;
 }
 
+/// Q9.22 m: how far a body's turn may move a contact point before its manifold is made anew: an
+/// eighth of the bounding radius; a very slender one's long axis must not leave the body by that.
+std::int64_t turn_bound(const BodyProperties& body) {
+    return body.bounding_radius >> (is_very_slender(body) ? 5 : 3);
+}
+
 /// True where no contact point has drifted or turned enough for its manifold to be made anew.
 /// Keeping it is what lets tall stacks stand: the solver's rows then stay exactly the same.
 bool PairLook::is_still(const Pair& pair) const {
@@ -237,11 +243,13 @@ bool PairLook::is_still(const Pair& pair) const {
     const Manifold& manifold = tables_.manifolds[pair.manifold];
     std::int32_t delta[3];
     pair_delta(frame_a, frame_b, tables_.motion[pair.row_a], tables_.motion[pair.row_b], delta);
-    // A turn by an eighth of the bounding radius; a fixed body does not turn.
+    // A fixed body does not turn.
     const BodyProperties& a = tables_.properties[pair.row_a];
     const BodyProperties& b = tables_.properties[pair.row_b];
     const TurnSince turn_of_a(frame_a, manifold.orientation_a, a.mode != kFixed);
     const TurnSince turn_of_b(frame_b, manifold.orientation_b, b.mode != kFixed);
+    const std::int64_t turn_bound_a = turn_bound(a);
+    const std::int64_t turn_bound_b = turn_bound(b);
     for (std::uint32_t point = 0; point < pair.point_count; ++point) {
         const std::int32_t* anchor_a = manifold.anchor_a + 3 * point;
         std::int32_t anchor_b[3];
@@ -256,8 +264,8 @@ bool PairLook::is_still(const Pair& pair) const {
         for (int axis = 0; axis < 3; ++axis) {
             const std::int64_t drift = std::int64_t{delta[axis]} - manifold.centre_delta[axis] +
                                        turn_b[axis] - turn_a[axis];
-            if (magnitude(drift) > kDriftMax || magnitude(turn_a[axis]) > a.bounding_radius >> 3 ||
-                magnitude(turn_b[axis]) > b.bounding_radius >> 3) {
+            if (magnitude(drift) > kDriftMax || magnitude(turn_a[axis]) > turn_bound_a ||
+                magnitude(turn_b[axis]) > turn_bound_b) {
                 return false;
             }
             square += drift * drift;

@@ -379,10 +379,10 @@ void BlockPreparation<L>::hold_arm(const Vector body[kBodyTermCount],
                                    Vector slender,
                                    const Vector along[3],
                                    Vector arm[3]) const {
-    constexpr int kProbe = 16;                                    // binary places
-    constexpr int kSquare = 12;                                   // of squares
+    constexpr int kProbe = 14;                                    // binary places
+    constexpr int kSquare = 11;                                   // of squares
     constexpr std::int32_t kInverseSquare = kCoefficientOne / 60; // 1 / 7.74^2
-    const Vector most = L::set((128 << kProbe) - 1);
+    const Vector most = L::set((512 << kProbe) - 1);
     const auto bounded = [&](Vector value) { return L::clamp(value, L::negate(most), most); };
     Vector scaled[3];
     Vector row[3];
