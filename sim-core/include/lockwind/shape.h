@@ -57,7 +57,9 @@ struct CompoundDefinition {
 /// Ground over a grid: sample (column, row) lies at x = (column - (columns - 1) / 2) spacing_x,
 /// z = (row - (rows - 1) / 2) spacing_z, y = heights[row * columns + column]. Each cell is two
 /// triangles that meet along the diagonal from its lower corner (column, row) to the upper one
-/// (column + 1, row + 1); they are seen, and touched, from above only.
+/// (column + 1, row + 1); they are seen, and touched, from above only. Triangles 2 i and 2 i + 1
+/// are those of the i-th cell that is no hole: the one on the side of its greatest z, then of its
+/// greatest x.
 struct HeightFieldDefinition {
     std::uint32_t columns = 2; // along x
     std::uint32_t rows = 2;    // along z
@@ -68,9 +70,9 @@ struct HeightFieldDefinition {
 };
 
 /// Triangles, each of three vertices that go counter-clockwise seen from its front, where alone it
-/// is touched. Vertices at the same place are one. Triangles are neighbours where they share an
-/// edge and go along it in opposite directions; at an edge of only one triangle, or of three and
-/// more, a surface ends.
+/// is touched. Triangle i has indices[3 i] and the next two. Vertices at the same place are one.
+/// Triangles are neighbours where they share an edge and go along it in opposite directions; at an
+/// edge of only one triangle, or of three and more, a surface ends.
 struct MeshDefinition {
     std::vector<Vec3> vertices;         // m
     std::vector<std::uint32_t> indices; // three a triangle

@@ -46,7 +46,9 @@ struct JointView {
     Vec3 target;      // m, of a grab
 };
 
-/// What two bodies press on each other, since contact_begin until contact_end.
+/// What two bodies press on each other, since contact_begin until contact_end. Bodies that are made
+/// of parts have one for each two parts that touch, in the order of their numbers; their events are
+/// told once for all of them.
 struct ContactView {
     struct Point {
         Vec3 position;     // m, halfway between the surfaces
@@ -55,6 +57,8 @@ struct ContactView {
     };
     BodyId body_a; // below body_b
     BodyId body_b;
+    std::uint32_t part_a; // child of a compound, triangle of a surface; 0 of any other shape
+    std::uint32_t part_b;
     bool sensor;
     Vec3 normal; // unit, from a to b
     std::uint32_t point_count;

@@ -1,5 +1,6 @@
 #include "dynamics/activity.h"
 #include "dynamics/make_body.h"
+#include "dynamics/pair_parts.h"
 #include "dynamics/pairing.h"
 #include "dynamics/solver_format.h"
 #include "dynamics/substep_classes.h"
@@ -49,6 +50,12 @@ ContactView view_of(const DynamicsTables& tables, const Pair& pair, std::int64_t
     ContactView view{};
     view.body_a = a.id;
     view.body_b = b.id;
+    if (pair.child != 0) {
+        const PartIndices parts =
+            parts_of(pair.child, is_surface(static_cast<ShapeType>(of_b.shape)));
+        view.part_a = parts.a;
+        view.part_b = parts.b;
+    }
     view.sensor = is_sensing(of_a, of_b);
     view.normal = {convert<Real>(Unit::from_raw(manifold.normal[0])),
                    convert<Real>(Unit::from_raw(manifold.normal[1])),

@@ -4,8 +4,10 @@
 #include "world/state.h"
 
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <map>
+#include <set>
 
 namespace lockwind::test {
 namespace {
@@ -93,6 +95,78 @@ TEST_P(Parts, TouchByOneEventForTwoBodies) {
     }
     EXPECT_GT(begun, 16);
     EXPECT_GT(rows_most, 2U); // several parts of two bodies at once
+}
+
+/// How far a point lies outside of a child that is a box or ball, m.
+double beyond_child(const BodyView& body, const CompoundChild& child, const Vec3& point) {
+    const Vec3 local =
+        rotate(conjugate(child.orientation),
+               rotate(conjugate(body.orientation), point - body.position) - child.position);
+    const double at[3] = {to_double(local.x), to_double(local.y), to_double(local.z)};
+    if (child.shape.type == ShapeType::sphere) {
+        return std::hypot(at[0], at[1], at[2]) - to_double(child.shape.radius);
+    }
+    const Vec3& half = child.shape.half_extents;
+    return std::max({std::abs(at[0]) - to_double(half.x),
+                     std::abs(at[1]) - to_double(half.y),
+                     std::abs(at[2]) - to_double(half.z)});
+}
+
+/// How far a point of [-half, half]^2, seen from above, lies outside of a triangle of
+/// field_over(cells, half, .) or of its mesh, whose diagonals go the other way.
+double beyond_triangle(
+    ShapeType type, std::uint32_t triangle, std::uint32_t cells, double half, const Vec3& point) {
+    const double cell = 2 * half / cells;
+    const double x = (to_double(point.x) + half) / cell - triangle / 2 % cells;
+    const double z = (to_double(point.z) + half) / cell - triangle / 2 / cells;
+    const bool first = triangle % 2 == 0;
+    const double across =
+        type == ShapeType::height_field ? (first ? x - z : z - x) : (first ? x + z - 1 : 1 - x - z);
+    return std::max({-x, x - 1, -z, z - 1, across}) * cell;
+}
+
+TEST_P(Parts, AreNamedByTheirContacts) {
+    WorldDefinition scene;
+    scene.height_fields = {field_over(8, 8, [](double, double) { return 0.0; })};
+    scene.meshes = {mesh_of(scene.height_fields[0])};
+    scene.compounds = {table_piece(), dumbbell_piece()};
+    scene.bodies = {ground_of(5, GetParam()),
+                    body_of(2, ShapeType::compound, {0.3, 0.01, 0.2}),
+                    body_of(7, ShapeType::compound, {0.5, 1.33, 0.3}, 1),
+                    body_of(9, ShapeType::sphere, {-4.7, 0.5, 3.3})};
+    scene.bodies[3].shape.radius = 0.5;
+    const WorldPtr world = make_world(scene);
+    step_idle(*world, 30);
+    std::set<std::pair<BodyId, std::uint32_t>> legs;
+    std::set<std::uint32_t> triangles;
+    int simple = 0;
+    for (const ContactView& contact : world->contacts()) {
+        for (const auto& [id, part] : {std::pair{contact.body_a, contact.part_a},
+                                       std::pair{contact.body_b, contact.part_b}}) {
+            const BodyView body = world->body(id).value();
+            if (body.shape.type == ShapeType::sphere) {
+                EXPECT_EQ(part, 0U);
+                ++simple;
+                continue;
+            }
+            for (std::uint32_t point = 0; point < contact.point_count; ++point) {
+                const Vec3& place = contact.points[point].position;
+                if (body.shape.type == ShapeType::compound) {
+                    const CompoundDefinition& compound = scene.compounds[body.shape.compound];
+                    ASSERT_LT(part, compound.children.size());
+                    EXPECT_LT(beyond_child(body, compound.children[part], place), 0.015);
+                    legs.insert({id, part});
+                } else {
+                    ASSERT_LT(part, 128U);
+                    EXPECT_LT(beyond_triangle(GetParam(), part, 8, 8, place), 0.01);
+                    triangles.insert(part);
+                }
+            }
+        }
+    }
+    EXPECT_EQ(legs.size(), 7U); // of a table, its top, and a dumbbell's balls
+    EXPECT_GT(triangles.size(), 4U);
+    EXPECT_GT(simple, 0);
 }
 
 TEST_P(Parts, FallAsleepAndWakeTogether) {
