@@ -61,7 +61,7 @@ PUBLIC = {
     "base": "assert event hash_tree kept_state phase_observer result schema slot_input types",
     "math": "eigen fixed int128 integer overflow rng trig vector wide",
     "geometry": "shape",
-    "dynamics": "simd world_definition",
+    "dynamics": "level_of_detail simd world_definition",
     "systems": "player_input",
     "world": "ccd query world",
     "simulation": "simulation",

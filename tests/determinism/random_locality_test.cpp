@@ -195,6 +195,8 @@ struct Happened {
     std::uint64_t created = 0;
     std::uint64_t destroyed = 0;
     std::uint64_t contacts = 0;
+    std::uint64_t simplified = 0; // bodies, summed over the ticks
+    std::uint64_t frozen = 0;
 
     void add(const World& world) {
         for (const Event& event : world.events()) {
@@ -204,6 +206,11 @@ struct Happened {
             destroyed += event.type == EventType::destroyed ? 1 : 0;
         }
         contacts += world.counts().contacts;
+        for (BodyRow row = 0; row < world.body_count(); ++row) {
+            const BodyLevel level = world.body_at(row).level;
+            simplified += level == BodyLevel::simplified ? 1 : 0;
+            frozen += level == BodyLevel::frozen ? 1 : 0;
+        }
     }
 };
 
@@ -214,6 +221,7 @@ void compare(std::uint64_t seed, Happened& happened) {
     for (WorldDefinition* scene : {&alone[0], &alone[1], &both}) {
         scene->settings.seed = seed;
         scene->settings.body_capacity = 400;
+        scene->settings.level_of_detail = {seed % 2 == 0, 10, 18, 2};
     }
     for (int group = 0; group < 2; ++group) {
         add_group(alone[group], groups[group]);
@@ -256,12 +264,18 @@ TEST(Locality, OfRandomScenesWithSleepShotsAndScripts) {
         all.created += happened.created;
         all.destroyed += happened.destroyed;
         all.contacts += happened.contacts;
+        all.simplified += happened.simplified;
+        all.frozen += happened.frozen;
     }
     std::cout << scenes << " scenes: " << all.slept << " bodies fell asleep, " << all.woke
               << " were woken, " << all.created << " shot, " << all.destroyed << " vanished, "
-              << all.contacts / (scenes * kTicks) << " contact points a tick\n";
+              << all.contacts / (scenes * kTicks) << " contact points, "
+              << all.simplified / (scenes * kTicks) << " simplified and "
+              << all.frozen / (scenes * kTicks) << " frozen bodies a tick\n";
     EXPECT_GT(all.woke, 5U * scenes);
     EXPECT_GT(all.destroyed, scenes);
+    EXPECT_GT(all.simplified, scenes * kTicks);
+    EXPECT_GT(all.frozen, scenes * kTicks);
 }
 
 } // namespace

@@ -35,6 +35,7 @@ struct BodyView {
     Vec3 angular_velocity; // rad/s
     Real mass;             // kg; 0 unless dynamic
     bool asleep;           // fixed bodies are, and kinematic ones that do not move
+    BodyLevel level;
 };
 
 struct JointView {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lockwind/level_of_detail.h"
 #include "lockwind/shape.h"
 #include "lockwind/types.h"
 #include "lockwind/vector.h"
@@ -147,6 +148,7 @@ struct WorldSettings {
     Real sleep_seconds = 0.5;        // still for so long, an island sleeps; 0: none ever does
     Real bounds = 1000.0;            // m from the origin, on each axis
     BoundsPolicy bounds_policy = BoundsPolicy::destroy;
+    LevelOfDetail level_of_detail;
     std::uint64_t seed = 1;
     /// By layer, the layers that its bodies meet; both must agree.
     std::array<std::uint32_t, kLayerCount> layer_masks = all_layers();

@@ -29,7 +29,7 @@ bool Activity::is_dynamic(const DynamicsTables& tables, BodyRow row) {
 void Activity::read_rows(const Table<BodySleep>& sleep) {
     begin(sleep.count());
     for (BodyRow row = 0; row < row_count_; ++row) {
-        if (sleep[row].asleep == 0) {
+        if (lockwind::is_awake(sleep[row])) {
             part_[row] = Part::awake;
             rows_.push_back(row);
         }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lockwind/level_of_detail.h"
 #include "lockwind/schema.h"
 #include "lockwind/types.h"
 
@@ -78,15 +79,25 @@ constexpr std::uint8_t bit_of(MotionBound bound) {
     return static_cast<std::uint8_t>(1U << static_cast<unsigned>(bound));
 }
 
-/// Whether a body rests: row of "body_sleep", same row as its BodyMotion. Apart and narrow, so that
-/// a step sees at a glance who is awake.
+/// Whether a step moves a body: row of "body_sleep", same row as its BodyMotion. Apart and narrow,
+/// so that a step sees at a glance who is awake.
 struct BodySleep {
     std::uint16_t still_ticks; // for how many it has been slow; at most 65535
-    std::uint8_t asleep; // 0, 1: no phase moves it. Fixed bodies sleep too, and kinematic ones
-                         // that do not move
-    std::uint8_t moved;  // bit_of(MotionBound): passed since a narrow phase saw it awake
+    std::uint8_t level;        // BodyLevel; fixed bodies are not far
+    std::uint8_t moved;        // bit_of(MotionBound): passed since a narrow phase saw it awake
 };
 static_assert(sizeof(BodySleep) == 4);
+
+constexpr BodyLevel level_of(const BodySleep& sleep) {
+    return static_cast<BodyLevel>(sleep.level);
+}
+constexpr void set_level(BodySleep& sleep, BodyLevel level) {
+    sleep.level = static_cast<std::uint8_t>(level);
+}
+/// Whether phases move it.
+constexpr bool is_awake(const BodySleep& sleep) {
+    return (sleep.level & 1U) == 0;
+}
 
 inline constexpr std::array kBodyMotionFields{
     LOCKWIND_FIELD(BodyMotion, id, 0, "", ""),
@@ -130,7 +141,7 @@ inline constexpr std::array kBodyLifeFields{
 
 inline constexpr std::array kBodySleepFields{
     LOCKWIND_FIELD(BodySleep, still_ticks, 0, "ticks", ""),
-    LOCKWIND_FIELD(BodySleep, asleep, 0, "", ""),
+    LOCKWIND_FIELD(BodySleep, level, 0, "", ""),
     LOCKWIND_FIELD(BodySleep, moved, 0, "", ""),
 };
 

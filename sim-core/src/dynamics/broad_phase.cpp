@@ -88,7 +88,7 @@ void BroadPhase::update_bounds(const DynamicsTables& tables,
     for (const BodyRow row : awake) {
         const BodyMotion& motion = tables.motion[row];
         Bounds tight = tight_bounds(frames[row], motion);
-        if (foresight_.reach(motion, tables.properties[row]) != 0) {
+        if (foresight_.reach(tables, row) != 0) {
             tight = foresight_.extended(tight, motion);
         }
         if (contains(stored_bounds(motion), tight)) {

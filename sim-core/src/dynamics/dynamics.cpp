@@ -4,6 +4,7 @@
 #include "dynamics/body_frame.h"
 #include "dynamics/broad_phase.h"
 #include "dynamics/contact_kernel_choice.h"
+#include "dynamics/levels.h"
 #include "dynamics/manifold_slots.h"
 #include "dynamics/narrow_phase.h"
 #include "dynamics/pair_parts.h"
@@ -98,7 +99,8 @@ struct Dynamics::Impl {
     Impl(const DynamicsSettings& settings, const ShapeLibrary* shapes, Simd simd)
         : activity(settings), frames(settings.body_capacity, shapes),
           slots(settings.manifold_capacity), broad(settings, shapes), narrow(settings),
-          solver(settings, contact_kernels(simd)), sweep(settings), sleep(settings) {
+          solver(settings, contact_kernels(simd)), sweep(settings), sleep(settings),
+          levels(settings) {
         // A pair that goes and one that comes both change in a tick.
         changes.reserve(2 * std::size_t{settings.pair_capacity});
     }
@@ -122,6 +124,7 @@ struct Dynamics::Impl {
     Solver solver;
     Sweep sweep;
     Sleep sleep;
+    Levels levels;
     std::vector<ContactChange> changes;
     bool pairs_moved = false;
 };
@@ -196,6 +199,10 @@ std::span<const ContactHit> Dynamics::contact_hits() const {
 
 void Dynamics::sleep(const DynamicsTables& tables) {
     impl_->sleep.fall_asleep(tables, impl_->activity);
+}
+
+void Dynamics::choose_levels(const DynamicsTables& tables, std::span<const BodyRow> viewers) {
+    impl_->levels.choose(tables, impl_->activity, viewers);
 }
 
 std::span<const SleepChange> Dynamics::sleep_changes() const {

@@ -6,6 +6,7 @@
 #include "dynamics/joint.h"
 #include "geometry/shape_library.h"
 
+#include "lockwind/level_of_detail.h"
 #include "lockwind/simd.h"
 #include "lockwind/vector.h"
 
@@ -23,6 +24,7 @@ struct DynamicsSettings {
     Real angular_speed_max = 100.0; // rad/s
     Real sleep_speed = 0.05;        // m/s
     std::uint32_t sleep_ticks = 0;  // slow for so long, an island sleeps; 0: never
+    LevelOfDetail level_of_detail;
     std::uint32_t body_capacity = 0;
     std::uint32_t pair_capacity = 0;
     std::uint32_t manifold_capacity = 0;
@@ -68,7 +70,7 @@ struct ContactHit {
     std::int32_t impulse; // Q11.20 m/s: largest normal impulse of a substep / reduced mass
 };
 
-/// A dynamic body that fell asleep or woke in this tick.
+/// A dynamic body that fell asleep or woke in this tick. To freeze and to thaw is neither.
 struct SleepChange {
     BodyRow row;
     bool asleep;
@@ -105,6 +107,8 @@ public:
 
     /// Puts islands to sleep that were slow for long enough.
     void sleep(const DynamicsTables& tables);
+    /// Gives all bodies that do not sleep their levels of detail by the distance to `viewers`.
+    void choose_levels(const DynamicsTables& tables, std::span<const BodyRow> viewers);
     /// Of wake and sleep, in this order, each in row order.
     std::span<const SleepChange> sleep_changes() const;
     /// Rows that the last solve moved, or would have, in row order.
@@ -129,7 +133,7 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Wakes one body; the next tick's wake() wakes what it touches and is joined to.
+/// Wakes, or thaws, one body; the next tick's wake() wakes what it touches and is joined to.
 void wake_body(const DynamicsTables& tables, BodyRow row);
 /// The same of both; kNoIndex and bodies that are not dynamic stay as they are.
 void wake_joined(const DynamicsTables& tables, const Joint& joint);

@@ -37,12 +37,13 @@ Foresight::Foresight(const DynamicsSettings& settings) : tick_rate_(settings.tic
         std::min<std::int64_t>(constants.separation_max, way_of(speed, tick_rate_)));
 }
 
-std::int32_t Foresight::reach(const BodyMotion& motion, const BodyProperties& body) const {
+std::int32_t Foresight::reach(const DynamicsTables& tables, BodyRow row) const {
+    const BodyProperties& body = tables.properties[row];
     if (body.collision_mode != kSpeculative || body.mode != kDynamic ||
-        body.bounding_radius > kRadiusMax) {
+        body.bounding_radius > kRadiusMax || level_of(tables.sleep[row]) != BodyLevel::full) {
         return 0;
     }
-    const std::uint64_t speed = floor_sqrt(squared_length(motion.linear_velocity));
+    const std::uint64_t speed = floor_sqrt(squared_length(tables.motion[row].linear_velocity));
     const std::int64_t way = way_of(static_cast<std::int64_t>(speed) + 1, tick_rate_);
     return way <= kSpeculativeMargin / 2 || way > reach_max_ ? 0 : static_cast<std::int32_t>(way);
 }

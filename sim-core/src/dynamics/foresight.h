@@ -16,9 +16,9 @@ public:
     explicit Foresight(const DynamicsSettings& settings);
 
     /// Q9.22 m: the body's way in a tick at its velocity. 0 where it does not look ahead: it has
-    /// another mode, or is so slow that the usual margin does, or so fast or large that the formats
-    /// do not hold its way; then it is swept.
-    std::int32_t reach(const BodyMotion& motion, const BodyProperties& body) const;
+    /// another mode, or is not at full detail, or so slow that the usual margin does, or so fast or
+    /// large that the formats do not hold its way; then it is swept.
+    std::int32_t reach(const DynamicsTables& tables, BodyRow row) const;
     /// Bounds that hold a body now and at the end of the way that reach() told of.
     Bounds extended(const Bounds& tight, const BodyMotion& motion) const;
     /// Q9.22 m that A and B near each other along a normal from A to B in a tick.

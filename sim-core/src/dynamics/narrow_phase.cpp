@@ -525,9 +525,8 @@ void NarrowPhase::read_gates(const DynamicsTables& tables,
                              const BodyFrames& frames,
                              std::span<const BodyRow> rows) {
     for (const BodyRow row : rows) {
-        gates_[row] = {tables.sleep[row].moved,
-                       is_flat(frames[row].shape),
-                       foresight_.reach(tables.motion[row], tables.properties[row])};
+        gates_[row] = {
+            tables.sleep[row].moved, is_flat(frames[row].shape), foresight_.reach(tables, row)};
     }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "dynamics/body.h"
+#include "dynamics/dynamics.h"
 
 #include "lockwind/world_definition.h"
 
@@ -20,6 +21,12 @@ constexpr bool may_meet(const BodyProperties& a, const BodyProperties& b) {
 /// A pair that only tells of its overlap: nothing is pushed, held or woken by it.
 constexpr bool is_sensing(const BodyProperties& a, const BodyProperties& b) {
     return (a.sensor | b.sensor) != 0;
+}
+
+/// Whether the two touch, and mind it.
+inline bool is_pressing(const Pair& pair, const DynamicsTables& tables) {
+    return pair.point_count != 0 &&
+           !is_sensing(tables.properties[pair.row_a], tables.properties[pair.row_b]);
 }
 
 /// Two bodies' friction or restitution, Q3.28, 0 .. kFrictionMax, as one; also in this range.

@@ -38,22 +38,21 @@ bool is_dynamic(const DynamicsTables& tables, BodyRow row) {
     return tables.properties[row].mode == kDynamic;
 }
 
-/// Whether the two touch, and mind it.
-bool is_pressing(const Pair& pair, const DynamicsTables& tables) {
-    return pair.point_count != 0 &&
-           !is_sensing(tables.properties[pair.row_a], tables.properties[pair.row_b]);
+/// Whether the body wakes with its island: dynamic, or a kinematic one that has frozen with it.
+bool is_member(const DynamicsTables& tables, BodyRow row) {
+    return is_dynamic(tables, row) || level_of(tables.sleep[row]) == BodyLevel::frozen;
 }
 
-/// Whether the pair holds two dynamic bodies together.
+/// Whether the pair holds two of an island together.
 bool is_bond(const Pair& pair, const DynamicsTables& tables) {
-    return is_pressing(pair, tables) && is_dynamic(tables, pair.row_a) &&
-           is_dynamic(tables, pair.row_b);
+    return is_pressing(pair, tables) && is_member(tables, pair.row_a) &&
+           is_member(tables, pair.row_b);
 }
 
 /// Where one of the two is a kinematic body that moves.
 void keep_awake_if_carried(const DynamicsTables& tables, BodyRow a, BodyRow b) {
     const auto carries = [&](BodyRow row) {
-        return !is_dynamic(tables, row) && tables.sleep[row].asleep == 0;
+        return !is_dynamic(tables, row) && is_awake(tables.sleep[row]);
     };
     if (carries(a)) {
         tables.sleep[b].still_ticks = 0;
@@ -63,18 +62,18 @@ void keep_awake_if_carried(const DynamicsTables& tables, BodyRow a, BodyRow b) {
     }
 }
 
-/// Whether the joint holds two dynamic bodies together. Damaged rows must not lead outside.
+/// Whether the joint holds two of an island together. Damaged rows must not lead outside.
 bool is_bond(const Joint& joint, const DynamicsTables& tables) {
     const std::uint32_t count = tables.properties.count();
-    return joint.row_a < count && joint.row_b < count && is_dynamic(tables, joint.row_a) &&
-           is_dynamic(tables, joint.row_b);
+    return joint.row_a < count && joint.row_b < count && is_member(tables, joint.row_a) &&
+           is_member(tables, joint.row_b);
 }
 
 bool is_woken_by(BodyRow row,
                  BodyRow other,
                  const DynamicsTables& tables,
                  const Activity& activity) {
-    return is_dynamic(tables, row) && !activity.is_awake(row) && activity.is_awake(other) &&
+    return is_member(tables, row) && !activity.is_awake(row) && activity.is_awake(other) &&
            tables.properties[other].mode != kFixed;
 }
 
@@ -109,10 +108,12 @@ bool Sleep::wake(const DynamicsTables& tables, const Activity& activity) {
     }
     join_sleepers(tables, activity);
     for (BodyRow row = 0; row < tables.motion.count(); ++row) {
-        const bool sleeps = !activity.is_awake(row) && is_dynamic(tables, row);
-        if (sleeps && is_marked_[islands_.find(row)] != 0) {
+        const bool rests = !activity.is_awake(row) && is_member(tables, row);
+        if (rests && is_marked_[islands_.find(row)] != 0) {
+            if (level_of(tables.sleep[row]) == BodyLevel::asleep) {
+                changes_.push_back({row, false});
+            }
             wake_body(tables, row);
-            changes_.push_back({row, false});
         }
     }
     return true;
@@ -168,7 +169,7 @@ void Sleep::fall_asleep(const DynamicsTables& tables, const Activity& activity) 
             BodyMotion& motion = tables.motion[row];
             std::fill_n(motion.linear_velocity, 3, 0);
             std::fill_n(motion.angular_velocity, 3, 0);
-            sleep.asleep = 1;
+            set_level(sleep, BodyLevel::asleep);
             changes_.push_back({row, true});
         }
     }
@@ -187,11 +188,9 @@ bool Sleep::count_still_ticks(const DynamicsTables& tables, std::span<const Body
             sleep.still_ticks = static_cast<std::uint16_t>(
                 still ? std::min(sleep.still_ticks + 1, int{kStillTicksMax}) : 0);
             is_due = is_due || sleep.still_ticks >= sleep_ticks_;
-        } else {
-            sleep.asleep = body.mode == kFixed || (is_zero(motion.linear_velocity) &&
-                                                   is_zero(motion.angular_velocity))
-                               ? 1
-                               : 0;
+        } else if (body.mode == kFixed ||
+                   (is_zero(motion.linear_velocity) && is_zero(motion.angular_velocity))) {
+            set_level(sleep, BodyLevel::asleep);
         }
     }
     return is_due;
@@ -257,7 +256,17 @@ bool Sleep::is_slow(const BodyMotion& motion, const BodyProperties& body) const 
 void wake_body(const DynamicsTables& tables, BodyRow row) {
     BodySleep& sleep = tables.sleep[row];
     sleep.still_ticks = 0;
-    sleep.asleep = 0;
+    switch (level_of(sleep)) {
+    case BodyLevel::asleep:
+        set_level(sleep, BodyLevel::full);
+        break;
+    case BodyLevel::frozen:
+        set_level(sleep, BodyLevel::simplified);
+        break;
+    case BodyLevel::full:
+    case BodyLevel::simplified:
+        break;
+    }
 }
 
 } // namespace lockwind

@@ -12,12 +12,12 @@ namespace lockwind {
 
 /// Puts islands to sleep that were slow for long enough, and wakes them. An island is what touching
 /// pairs and joints hold together; it sleeps and wakes as a whole. Between ticks it is not stored:
-/// it follows from the pairs.
+/// it follows from the pairs. Frozen islands wake as sleeping ones do, but for the telling.
 class Sleep {
 public:
     explicit Sleep(const DynamicsSettings& settings);
 
-    /// Wakes the islands of sleeping bodies that touch one that is awake. True where any woke:
+    /// Wakes the islands of resting bodies that touch one that is awake. True where any woke:
     /// `activity` is then out of date.
     bool wake(const DynamicsTables& tables, const Activity& activity);
     /// Counts for how long the bodies that are awake were slow, and puts islands to sleep. What has

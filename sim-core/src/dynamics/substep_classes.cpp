@@ -15,8 +15,18 @@ constexpr auto kDynamic = static_cast<std::uint8_t>(BodyMode::dynamic);
 } // namespace
 
 SubstepClasses::SubstepClasses(const DynamicsSettings& settings)
-    : usual_(make_step_constants(settings).substeps), islands_(settings.body_capacity),
+    : usual_(make_step_constants(settings).substeps),
+      simplified_(settings.level_of_detail.simplified_substeps), islands_(settings.body_capacity),
       substeps_(settings.body_capacity) {}
+
+std::uint32_t SubstepClasses::asked_by(const DynamicsTables& tables, BodyRow row) const {
+    // Damaged rows must not ask for more than there are constants for.
+    const std::uint32_t own =
+        std::min<std::uint32_t>(tables.properties[row].substeps, kSubstepsMax);
+    const std::uint32_t asked = own == 0 ? usual_ : own;
+    return level_of(tables.sleep[row]) == BodyLevel::simplified ? std::min(asked, simplified_)
+                                                                : asked;
+}
 
 void SubstepClasses::join(const DynamicsTables& tables, const Activity& activity) {
     const auto joins = [&](BodyRow row) {
@@ -40,18 +50,14 @@ void SubstepClasses::join(const DynamicsTables& tables, const Activity& activity
 bool SubstepClasses::read(const DynamicsTables& tables, const Activity& activity) {
     const std::span<const BodyRow> rows = activity.rows();
     const auto is_usual = [&](BodyRow row) {
-        const BodyProperties& body = tables.properties[row];
-        return body.substeps == 0 || body.substeps == usual_ || body.mode != kDynamic;
+        return asked_by(tables, row) == usual_ || tables.properties[row].mode != kDynamic;
     };
     if (std::all_of(rows.begin(), rows.end(), is_usual)) {
         return false;
     }
     for (const BodyRow row : rows) {
-        // Damaged rows must not ask for more than there are constants for.
-        const std::uint32_t asked =
-            std::min<std::uint32_t>(tables.properties[row].substeps, kSubstepsMax);
         islands_.begin(row);
-        substeps_[row] = static_cast<std::uint8_t>(asked == 0 ? usual_ : asked);
+        substeps_[row] = static_cast<std::uint8_t>(asked_by(tables, row));
     }
     join(tables, activity);
     // First each island's root has the most, then all of its bodies have.

@@ -12,8 +12,9 @@
 
 namespace lockwind {
 
-/// How many substeps each island takes: the most that one of its bodies asks for. An island is what
-/// touching pairs and joints hold together in this tick. Scratch of one tick.
+/// How many substeps each island takes: the most that one of its bodies asks for; a simplified one
+/// asks for no more than level_of_detail.simplified_substeps. An island is what touching pairs and
+/// joints hold together in this tick. Scratch of one tick.
 class SubstepClasses {
 public:
     explicit SubstepClasses(const DynamicsSettings& settings);
@@ -26,9 +27,11 @@ public:
     std::uint32_t of(BodyRow row) const { return substeps_[row]; }
 
 private:
+    std::uint32_t asked_by(const DynamicsTables& tables, BodyRow row) const;
     void join(const DynamicsTables& tables, const Activity& activity);
 
     std::uint32_t usual_;
+    std::uint32_t simplified_; // at most
     Islands islands_;
     std::vector<std::uint8_t> substeps_; // by row
     std::array<std::uint32_t, kSubstepsMax> counts_{};

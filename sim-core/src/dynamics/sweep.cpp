@@ -25,6 +25,13 @@ constexpr auto kDiscrete = static_cast<std::uint8_t>(CollisionMode::discrete);
 constexpr auto kContinuous = static_cast<std::uint8_t>(CollisionMode::continuous);
 constexpr int kFiner = 32 - kLengthFraction;
 
+/// Whether its ways end at what they meet.
+bool is_continuous(const DynamicsTables& tables, BodyRow row) {
+    const BodyProperties& body = tables.properties[row];
+    return body.collision_mode != kDiscrete && body.mode == kDynamic &&
+           level_of(tables.sleep[row]) != BodyLevel::simplified;
+}
+
 /// The turn from one orientation to another, Q.30 rad: the shorter one; unless it is long and
 /// against the spin, for that is what a fast spinner's looks like.
 void turn_between(const std::int32_t from[4],
@@ -102,8 +109,7 @@ Sweep::Sweep(const DynamicsSettings& settings)
 
 void Sweep::remember(const DynamicsTables& tables, const Activity& activity) {
     has_any_ = std::any_of(activity.rows().begin(), activity.rows().end(), [&](BodyRow row) {
-        const BodyProperties& body = tables.properties[row];
-        return body.collision_mode != kDiscrete && body.mode == kDynamic;
+        return is_continuous(tables, row);
     });
     if (!has_any_) {
         return;
@@ -117,7 +123,7 @@ void Sweep::remember(const DynamicsTables& tables, const Activity& activity) {
         moved_[row] = 1;
         std::copy(motion.position, motion.position + 3, starts_[row].position);
         std::copy(motion.orientation, motion.orientation + 4, starts_[row].orientation);
-        starts_[row].level = foresight_.reach(motion, tables.properties[row]) != 0 ? 1 : 0;
+        starts_[row].level = foresight_.reach(tables, row) != 0 ? 1 : 0;
         ends_[row] = kSweepTimeEnd;
     }
 }
@@ -280,9 +286,7 @@ void Sweep::run(const DynamicsTables& tables, BodyFrames& frames, const Activity
     joined_.read(tables.joints);
     shortened_.clear();
     for (const BodyRow row : activity.rows()) {
-        const BodyProperties& body = tables.properties[row];
-        if (body.collision_mode != kDiscrete && body.mode == kDynamic &&
-            is_fast(tables, frames, row)) {
+        if (is_continuous(tables, row) && is_fast(tables, frames, row)) {
             sweep(tables, frames, row);
         }
     }

@@ -127,6 +127,7 @@ Result<PodSystem> PodSystem::create(const WorldDefinition& definition,
     PodSystem system;
     system.tick_seconds_ = kOne / Real(definition.settings.tick_rate_hz);
     system.supported_.resize(body_capacity);
+    system.rows_.reserve(definition.pods.size());
     for (Slot slot = 0; slot < definition.pods.size(); ++slot) {
         const PodDefinition& pod = definition.pods[slot];
         if (Status status = check_body(definition, slot); !status) {
@@ -165,6 +166,17 @@ std::vector<Player> PodSystem::initial_players() const {
         players.push_back(player);
     }
     return players;
+}
+
+std::span<const BodyRow> PodSystem::rows(const DynamicsTables& tables,
+                                         const Table<Player>& players) {
+    rows_.clear();
+    for (const Player& player : players.rows()) {
+        if (const BodyRow row = row_of(tables.motion, player.body); row != kNoIndex) {
+            rows_.push_back(row);
+        }
+    }
+    return rows_;
 }
 
 void PodSystem::mark_supported(const DynamicsTables& tables) {

@@ -36,6 +36,9 @@ public:
     /// Rows of section "player" as a match begins.
     std::vector<Player> initial_players() const;
 
+    /// Rows of the pods that there are, in slot order; until the next call.
+    std::span<const BodyRow> rows(const DynamicsTables& tables, const Table<Player>& players);
+
     /// Phase apply_inputs: changes the pods' velocities, cooldowns and intents to shoot.
     void apply_inputs(const DynamicsTables& tables,
                       const Table<Player>& players,
@@ -71,6 +74,7 @@ private:
                  BodyMotion& motion) const;
 
     std::vector<Parameters> pods_;        // by slot
+    std::vector<BodyRow> rows_;           // scratch of rows()
     std::vector<std::uint8_t> supported_; // by row: something holds the body up
     Real tick_seconds_;
 };

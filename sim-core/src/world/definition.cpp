@@ -16,6 +16,7 @@ constexpr Real kAngularSpeedLimit = 1000.0;
 constexpr Real kBoundsMax = 16000.0;
 constexpr Real kSleepSpeedMax = 10.0;
 constexpr Real kSleepSecondsMax = 60.0;
+constexpr Real kDetailDistanceMax = 16000.0;
 
 struct Range {
     const char* name;
@@ -45,6 +46,21 @@ Status check_settings(const WorldSettings& settings) {
         {"sleep_speed", settings.sleep_speed, 0, kSleepSpeedMax, "0 .. 10 m/s"},
         {"sleep_seconds", settings.sleep_seconds, 0, kSleepSecondsMax, "0 .. 60 s"},
         {"bounds", settings.bounds, 1, kBoundsMax, "1 .. 16000 m"},
+        {"level_of_detail.full_within",
+         settings.level_of_detail.full_within,
+         1,
+         kDetailDistanceMax,
+         "1 .. 16000 m"},
+        {"level_of_detail.simplified_within",
+         settings.level_of_detail.simplified_within,
+         settings.level_of_detail.full_within,
+         kDetailDistanceMax,
+         "level_of_detail.full_within .. 16000 m"},
+        {"level_of_detail.simplified_substeps",
+         settings.level_of_detail.simplified_substeps,
+         1,
+         kSubstepsMax,
+         "1 .. 16"},
     };
     for (const Range& range : ranges) {
         if (range.value < range.low || range.value > range.high) {
@@ -156,6 +172,7 @@ DynamicsSettings dynamics_settings(const WorldDefinition& definition) {
     dynamics.angular_speed_max = settings.angular_speed_max;
     dynamics.sleep_speed = settings.sleep_speed;
     dynamics.sleep_ticks = sleep_ticks(settings);
+    dynamics.level_of_detail = settings.level_of_detail;
     std::uint64_t bodies = definition.bodies.size() + 8;
     for (const PodDefinition& pod : definition.pods) {
         bodies += balls_max(pod);

@@ -22,7 +22,8 @@ BodyView view_of(const BodyMotion& motion,
             body.linear_velocity,
             body.angular_velocity,
             body.mass,
-            sleep.asleep != 0};
+            level_of(sleep) == BodyLevel::asleep,
+            level_of(sleep)};
 }
 
 Vec3 clamped(const Vec3& value, Real limit) {
@@ -79,7 +80,7 @@ WorldCounts World::counts() const {
     WorldCounts counts{};
     counts.bodies = tables.motion.count();
     for (BodyRow row = 0; row < counts.bodies; ++row) {
-        counts.awake += tables.sleep[row].asleep == 0 && is_dynamic(tables.properties[row]) ? 1 : 0;
+        counts.awake += is_awake(tables.sleep[row]) && is_dynamic(tables.properties[row]) ? 1 : 0;
     }
     counts.pairs = tables.pairs.count();
     for (const Pair& pair : tables.pairs.rows()) {

@@ -25,7 +25,7 @@ Status World::Impl::validate(StateArena& state, const DynamicsTables* known) {
         return kinds;
     }
     expand_kinds(rows.kinds, rows.lives, rows.properties);
-    if (Status status = check_bodies(rows); !status) {
+    if (Status status = check_bodies(rows, settings.level_of_detail); !status) {
         return status;
     }
     if (Status status = check_joints(rows); !status) {

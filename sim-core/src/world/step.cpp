@@ -151,6 +151,7 @@ StepFault Step::restitution() {
 
 StepFault Step::sleep() {
     world_.dynamics.sleep(tables_);
+    world_.dynamics.choose_levels(tables_, world_.pods.rows(tables_, world_.players()));
     return StepFault::none;
 }
 

@@ -201,15 +201,19 @@ const char* bad_properties_field(const BodyProperties& properties) {
     return nullptr;
 }
 
-/// A body that sleeps does not move.
+/// A body that sleeps does not move. Where there are no levels of detail, nobody would thaw.
 const char* bad_sleep_field(const BodySleep& sleep,
                             const BodyMotion& motion,
-                            const BodyProperties& properties) {
-    const bool moves =
-        properties.mode != static_cast<std::uint8_t>(BodyMode::fixed) &&
-        (!all_within(motion.linear_velocity, 0) || !all_within(motion.angular_velocity, 0));
-    if (sleep.asleep > 1 || (sleep.asleep == 1 && moves)) {
-        return "asleep";
+                            const BodyProperties& properties,
+                            const LevelOfDetail& detail) {
+    const bool is_fixed = properties.mode == static_cast<std::uint8_t>(BodyMode::fixed);
+    const bool moves = !is_fixed && (!all_within(motion.linear_velocity, 0) ||
+                                     !all_within(motion.angular_velocity, 0));
+    const bool is_far = sleep.level > static_cast<std::uint8_t>(BodyLevel::asleep);
+    if (sleep.level > static_cast<std::uint8_t>(BodyLevel::frozen) ||
+        (level_of(sleep) == BodyLevel::asleep && moves) ||
+        (is_far && (is_fixed || !detail.enabled))) {
+        return "level";
     }
     constexpr unsigned kMovedMax = bit_of(MotionBound::touching) | bit_of(MotionBound::other);
     return sleep.moved > kMovedMax ? "moved" : nullptr;
@@ -391,7 +395,7 @@ Status check_kinds(const DynamicsTables& tables,
     return Success{};
 }
 
-Status check_bodies(const DynamicsTables& tables) {
+Status check_bodies(const DynamicsTables& tables, const LevelOfDetail& detail) {
     for (BodyRow row = 0; row < tables.motion.count(); ++row) {
         const BodyMotion& motion = tables.motion[row];
         const BodyProperties& properties = tables.properties[row];
@@ -404,7 +408,7 @@ Status check_bodies(const DynamicsTables& tables) {
         if (const char* field = bad_motion_field(motion, properties); field != nullptr) {
             return bad("body", row, field);
         }
-        if (const char* field = bad_sleep_field(tables.sleep[row], motion, properties);
+        if (const char* field = bad_sleep_field(tables.sleep[row], motion, properties, detail);
             field != nullptr) {
             return bad("body_sleep", row, field);
         }

@@ -29,7 +29,7 @@ Status check_kinds(const DynamicsTables& tables,
                    const WorldSettings& settings,
                    const ShapeLibrary& shapes);
 /// Of sound kinds, whose properties the bodies have.
-Status check_bodies(const DynamicsTables& tables);
+Status check_bodies(const DynamicsTables& tables, const LevelOfDetail& detail);
 /// Of bodies that are sound.
 Status check_joints(const DynamicsTables& tables);
 /// Of sound bodies. Makes the pairs anew, which follow from the rest.
