@@ -39,6 +39,7 @@ const std::vector<GoldenRun>& golden_runs() {
         {"hulls", 4, {0, 60, 300}},
         {"bullets", 0, {0, 60, 300}},
         {"shapes", 4, {0, 60, 300}},
+        {"lod", 2, {0, 60, 150, 300}},
     };
     return runs;
 }

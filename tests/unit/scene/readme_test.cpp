@@ -44,7 +44,7 @@ TEST(SceneReadme, ExamplesParse) {
 TEST(SceneReadme, TellsTheBodyCountsOfBuiltInScenes) {
     const std::string text = readme();
     for (const char* row :
-         {"arena", "swarm_small", "empty", "pyramid_210", "hulls", "bullets", "shapes"}) {
+         {"arena", "swarm_small", "empty", "pyramid_210", "hulls", "bullets", "shapes", "lod"}) {
         const Result<WorldDefinition> world = load_scene(row);
         ASSERT_TRUE(world.ok());
         const std::string line =

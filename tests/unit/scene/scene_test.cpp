@@ -139,6 +139,37 @@ TEST(Scene, SettingsOfSleepAndBoundsAreRead) {
               std::string::npos);
 }
 
+TEST(Scene, LevelOfDetailIsReadWhereItIsGiven) {
+    EXPECT_FALSE(parse("name: \"t\" settings {}").settings.level_of_detail.enabled);
+    const LevelOfDetail usual =
+        parse("name: \"t\" settings { level_of_detail {} }").settings.level_of_detail;
+    EXPECT_TRUE(usual.enabled);
+    EXPECT_EQ(usual.full_within, Real(50));
+    EXPECT_EQ(usual.simplified_within, Real(200));
+    EXPECT_EQ(usual.simplified_substeps, 2U);
+    const LevelOfDetail own = parse("name: \"t\" settings { level_of_detail { full_within: 12.5 "
+                                    "simplified_within: 30 simplified_substeps: 1 } }")
+                                  .settings.level_of_detail;
+    EXPECT_EQ(own.full_within, Real(12.5));
+    EXPECT_EQ(own.simplified_within, Real(30));
+    EXPECT_EQ(own.simplified_substeps, 1U);
+}
+
+TEST(Scene, LevelOfDetailOutOfRangeIsAnErrorAtItsPlace) {
+    const auto error_in = [](const std::string& fields) {
+        return error_of("name: \"t\"\nsettings {\n  level_of_detail { " + fields + " }\n}");
+    };
+    const std::string path = "settings.level_of_detail.";
+    EXPECT_NE(error_in("full_within: 0.5").find("t.textproto:3:"), std::string::npos);
+    EXPECT_NE(error_in("full_within: 0.5").find(path + "full_within"), std::string::npos);
+    EXPECT_NE(error_in("full_within: 201").find(path + "full_within is above"), std::string::npos);
+    EXPECT_NE(error_in("full_within: 9 simplified_within: 8")
+                  .find(path + "simplified_within is below full_within"),
+              std::string::npos);
+    EXPECT_NE(error_in("simplified_substeps: 17").find(path + "simplified_substeps"),
+              std::string::npos);
+}
+
 TEST(Scene, LayersBecomeNumbersAndMasks) {
     const WorldDefinition scene =
         parse("name: \"t\" layer { name: \"debris\" ignores: \"debris\" ignores: \"player\" } "
