@@ -96,8 +96,10 @@ TEST(Locality, WhereTheWorldsOriginLiesDoesNotMatter) {
     WorldDefinition there;
     add_group(here, 1000, 0);
     add_group(there, 1000, 10000);
-    there.settings.bounds = 16000;
-    here.settings.bounds = 16000;
+    for (WorldDefinition* scene : {&here, &there}) {
+        scene->settings.bounds = 16000;
+        scene->settings.level_of_detail = {true, 6, 12, 2};
+    }
     const WorldPtr a = make_world(here);
     const WorldPtr b = make_world(there);
     for (Tick tick = 1; tick <= 240; ++tick) {
@@ -113,6 +115,7 @@ TEST(Locality, WhereTheWorldsOriginLiesDoesNotMatter) {
             ASSERT_EQ(moved.orientation, body.orientation);
             ASSERT_EQ(moved.linear_velocity, body.linear_velocity);
             ASSERT_EQ(moved.angular_velocity, body.angular_velocity);
+            ASSERT_EQ(moved.level, body.level);
         }
     }
 }

@@ -175,6 +175,7 @@ WorldDefinition draw_world(Draws& draws) {
     definition.settings.body_capacity = 64;
     definition.settings.joint_capacity = 32;
     definition.settings.bounds_policy = static_cast<BoundsPolicy>(draws.below(3));
+    definition.settings.level_of_detail = {draws.flag(), 2, 5, 2};
     draws.begin_definition();
     for (std::uint32_t hull = draws.below(3); hull > 0; --hull) {
         HullDefinition points;

@@ -6,7 +6,7 @@
 // A snapshot's canonical bytes, as a peer sends them to whoever joins.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace lockwind;
-    static const WorldPtr world = test::make_world(test::scene_of_all(12, 2));
+    static const WorldPtr world = test::make_world(test::with_levels(test::scene_of_all(12, 2)));
     static const std::vector<std::byte> start = [] {
         std::vector<std::byte> bytes;
         world->save(bytes);

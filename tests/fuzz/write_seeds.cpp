@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
     for (const Message& message : sample_messages()) {
         write(corpus / "message" / kind_name(message), encode(message));
     }
-    const WorldPtr world = test::make_world(test::scene_of_all(12, 2));
+    const WorldPtr world = test::make_world(test::with_levels(test::scene_of_all(12, 2)));
     for (int tick = 0; tick <= 60; ++tick) {
         if (tick % 30 == 0) {
             std::vector<std::byte> bytes;

@@ -117,7 +117,7 @@ TEST(Allocations, OnePlantedInAStepIsSeen) {
 }
 
 TEST(Allocations, NoneInAStepAfterTheFirst) {
-    WorldDefinition scene = busy_scene(220, 4);
+    WorldDefinition scene = with_levels(busy_scene(220, 4));
     add_bullets(scene, 30000, {0, 20, 0});
     const WorldPtr world = make_world(scene);
     step_busy(*world);

@@ -218,6 +218,12 @@ inline WorldDefinition scene_of_all(std::uint32_t count, std::uint32_t pods) {
     return definition;
 }
 
+/// The same with levels of detail, so near that scene_of_all with pods has bodies at each.
+inline WorldDefinition with_levels(WorldDefinition definition) {
+    definition.settings.level_of_detail = {true, 8, 25, 2};
+    return definition;
+}
+
 /// Inputs of one tick: each player drives, turns, jumps and shoots by draws that change every 15
 /// ticks.
 inline std::vector<SlotInput> busy_inputs(Tick tick, std::uint32_t slots, std::uint64_t seed = 1) {

@@ -77,17 +77,17 @@ Row* rows(World& world, std::uint32_t section) {
     return reinterpret_cast<Row*>(world.section_bytes(section).data());
 }
 
-/// m from the pod's centre to the bounding sphere of a ball of radius 0.5.
+/// m from the pod's centre to the surface of a ball of radius 2.
 double gap(const World& world, BodyId ball) {
     const Vec3 apart = world.body(ball)->position - world.body(kPod)->position;
-    return to_double(length(apart)) - 0.5;
+    return to_double(length(apart)) - 2;
 }
 
 TEST(LevelOfDetail, ABallGoesDownATenthBeyondWhereItComesUp) {
     WorldDefinition scene = pod_scene(40, 80, {60, 0, 0});
-    scene.bodies.push_back(sphere(10, {150, 0.5, 3}, 0.5));
+    scene.bodies.push_back(sphere(10, {150, 2, 4}, 2));
     scene.bodies.back().can_sleep = false;
-    scene.bodies.push_back(sphere(11, {0, 0.5, 30}, 0.5));
+    scene.bodies.push_back(sphere(11, {0, 2, 30}, 2));
     scene.bodies.back().can_sleep = false;
     const WorldPtr world = make_world(scene);
     std::vector<std::vector<double>> changes(2);
@@ -229,23 +229,26 @@ TEST(LevelOfDetail, WhenThePlayersAreGoneAllComesBack) {
 }
 
 TEST(LevelOfDetail, AnIslandHasTheLevelOfItsNearestBody) {
-    // Chains along z whose links are 1 m apart: joined, their ends lie on both sides of a border.
-    WorldDefinition scene = pod_scene(50, 100, {0, 0, -20});
-    add_chain(scene, 10, {0, 10, 97});
-    add_chain(scene, 30, {5, 10, 107});
+    // Chains whose links are 1 m apart along the way of the pod, which goes 1 m a tick.
+    WorldDefinition scene = pod_scene(50, 100, {0, 0, 60});
+    add_chain(scene, 10, {0, 10, 150});
+    add_chain(scene, 30, {5, 10, 160});
     const WorldPtr world = make_world(scene);
-    bool was_simplified = false;
-    for (int tick = 0; tick < 120; ++tick) {
+    std::vector<int> changes(2);
+    for (int tick = 0; tick < 330; ++tick) {
+        const BodyLevel before[] = {level_of(*world, 11), level_of(*world, 31)};
         step_idle(*world);
-        for (const BodyId first : {BodyId{11}, BodyId{31}}) {
+        for (BodyId chain = 0; chain < 2; ++chain) {
+            const BodyId first = 11 + 20 * chain;
             for (BodyId link = 1; link < 6; ++link) {
                 ASSERT_EQ(level_of(*world, first + link), level_of(*world, first)) << tick;
             }
+            changes[chain] += level_of(*world, first) != before[chain] ? 1 : 0;
         }
-        was_simplified = was_simplified || level_of(*world, 16) == BodyLevel::simplified;
     }
-    EXPECT_TRUE(was_simplified);
-    EXPECT_EQ(level_of(*world, 11), BodyLevel::frozen);
+    for (const int count : changes) {
+        EXPECT_EQ(count, 5); // down to frozen at once, then up twice and down twice
+    }
 }
 
 TEST(LevelOfDetail, ATouchThawsTheWholeIslandWithoutAnEvent) {
@@ -351,6 +354,30 @@ TEST(LevelOfDetail, AKinematicPlatformStopsAndGoesOnWithItsLoad) {
     EXPECT_NEAR(to_double(world->body(10)->position.y), 5 + (480 - ticks_frozen) / 60.0, 0.02);
 }
 
+TEST(LevelOfDetail, ATouchThawsAPlatformWithItsLoad) {
+    WorldDefinition scene = pod_scene(50, 100, {});
+    BodyDefinition platform = box(10, {117, 5, 0}, {4, 0.5, 4});
+    platform.mode = BodyMode::kinematic;
+    platform.linear_velocity.y = 1;
+    scene.bodies.push_back(platform);
+    add_stack(scene, 11, {117, 5.5, 0});
+    scene.bodies.push_back(sphere(20, {104, 6.2, 0}, 3));
+    scene.bodies.back().linear_velocity.x = 12;
+    const WorldPtr world = make_world(scene);
+    step_idle(*world);
+    ASSERT_EQ(level_of(*world, 10), BodyLevel::frozen);
+    ASSERT_EQ(level_of(*world, 20), BodyLevel::simplified);
+    int ticks = 0;
+    while (level_of(*world, 10) == BodyLevel::frozen && ticks < 60) {
+        step_idle(*world);
+        ++ticks;
+    }
+    EXPECT_NEAR(ticks, 30, 5); // 6 m at 12 m/s
+    for (const BodyId id : {10U, 11U, 12U, 13U}) {
+        EXPECT_EQ(level_of(*world, id), BodyLevel::simplified) << id;
+    }
+}
+
 TEST(LevelOfDetail, FrozenBodiesAreNotGoneOver) {
     WorldDefinition scene = pod_scene(50, 100, {});
     scene.settings.gravity = {};
@@ -379,8 +406,7 @@ TEST(LevelOfDetail, FrozenBodiesAreNotGoneOver) {
 
 /// All levels at once, and pods that change them.
 WorldDefinition levels_scene() {
-    WorldDefinition scene = scene_of_all(40, 2);
-    scene.settings.level_of_detail = {true, 8, 25, 2};
+    WorldDefinition scene = with_levels(scene_of_all(40, 2));
     add_stack(scene, 40000, {60, 0, 0});
     return scene;
 }

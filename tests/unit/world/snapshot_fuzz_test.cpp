@@ -65,7 +65,7 @@ private:
 };
 
 TEST(SnapshotFuzz, EveryMutationIsRefusedOrCanBeStepped) {
-    WorldDefinition definition = busy_scene(40, 2);
+    WorldDefinition definition = with_levels(busy_scene(40, 2));
     add_joints(definition, 1000, {0, 30, 0});
     const WorldPtr source = make_world(definition);
     std::vector<std::vector<std::byte>> sound;
