@@ -8,22 +8,28 @@
 #include "lockwind/world_definition.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace lockwind {
 
 namespace {
 
-/// Distances are Q51.12 m: 0.25 mm, and squares of 2^16 m add up in 62 bits.
+/// Distances are Q51.12 m: 0.25 mm, and the squares of 18 km, which no border exceeds, add up in 55
+/// bits.
 constexpr int kDistanceFraction = 12;
-constexpr std::int64_t kFarthest = std::int64_t{1} << (16 + kDistanceFraction);
+constexpr std::int64_t kBeyond = std::numeric_limits<std::int64_t>::max();
 
-/// Of the difference alone, so that nothing depends on where the origin lies.
-std::int64_t squared_distance(const BodyMotion& a, const BodyMotion& b) {
+/// kBeyond where it is more than `most` along an axis, which is all that most pairs are looked at
+/// for. Of the difference alone, so that nothing depends on where the origin lies.
+std::int64_t squared_distance(const BodyMotion& a, const BodyMotion& b, std::int64_t most) {
     std::int64_t square = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        const std::int64_t apart = magnitude(raw_subtract(a.position[axis], b.position[axis]));
-        const std::int64_t coarse = std::min(apart >> (32 - kDistanceFraction), kFarthest);
-        square += coarse * coarse;
+        const std::int64_t apart =
+            magnitude(raw_subtract(a.position[axis], b.position[axis])) >> (32 - kDistanceFraction);
+        if (apart > most) {
+            return kBeyond;
+        }
+        square += apart * apart;
     }
     return square;
 }
@@ -58,7 +64,8 @@ Levels::wish_of(const DynamicsTables& tables, BodyRow row, std::span<const BodyR
         radius + (level == BodyLevel::frozen ? simplified_.up : simplified_.down);
     BodyLevel wish = viewers.empty() ? BodyLevel::full : BodyLevel::frozen;
     for (const BodyRow viewer : viewers) {
-        const std::int64_t square = squared_distance(tables.motion[row], tables.motion[viewer]);
+        const std::int64_t square =
+            squared_distance(tables.motion[row], tables.motion[viewer], simplified);
         if (square <= full * full) {
             return BodyLevel::full;
         }
