@@ -100,7 +100,8 @@ void PairReader::read(ContactBlock& block, int lane, PairTerms& terms) const {
     const BodyProperties& a = tables.properties[row_a];
     const BodyProperties& b = tables.properties[row_b];
     const ContactImpulse& impulse = tables.impulses[block.manifold[lane]];
-    terms.manifold[lane] = &tables.manifolds[block.manifold[lane]];
+    const Manifold& manifold = tables.manifolds[block.manifold[lane]];
+    terms.manifold[lane] = &manifold;
     terms.body_a[lane] = &bodies.terms(row_a);
     terms.body_b[lane] = &bodies.terms(row_b);
     std::int32_t delta[3];
