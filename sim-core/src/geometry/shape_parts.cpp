@@ -144,13 +144,14 @@ void cast_at_surface(const ConvexCore& shape,
     turned_extents(body.rotation, shape, extents);
     SegmentProbe probe(local_start, local_way, extents);
     body.surface->tree().visit(probe, [&](std::uint32_t index) {
-        if (dot_unit(body.surface->triangle(index).normal, local_way) > 0) {
-            return;
-        }
+        // What leaves through the front is not stopped, but tells what it overlaps.
+        constexpr std::int64_t kNowhere[3] = {0, 0, 0};
+        const bool leaves = dot_unit(body.surface->triangle(index).normal, local_way) > 0;
         ConvexCore core;
         make_triangle_core(body, index, core);
         ConvexCastHit hit{};
-        if (shape_cast(shape, start, way, core, centre, hit) && first.offer(hit, index)) {
+        if (shape_cast(shape, start, leaves ? kNowhere : way, core, centre, hit) &&
+            first.offer(hit, index)) {
             probe.shorten(hit.fraction);
         }
     });

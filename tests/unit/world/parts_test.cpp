@@ -384,6 +384,11 @@ TEST(PartQueries, MeetHillsWhereTheyAre) {
         ASSERT_TRUE(cast.has_value());
         EXPECT_GT(15 - 20 * value(cast->fraction), height + 0.29);
         EXPECT_FALSE(world->shape_cast(ball, below, {}, {0, 20, 0}).has_value());
+        // What it overlaps at the start counts, even where it leaves.
+        const Vec3 amid{hit->point.x, hit->point.y - Real(0.1), hit->point.z};
+        const auto leaving = world->shape_cast(ball, amid, {}, {0, 20, 0});
+        ASSERT_TRUE(leaving.has_value());
+        EXPECT_EQ(leaving->fraction, Real(0));
         // The nearest place is no farther than straight down, and the cast's end is just clear.
         const Vec3 end = above + Vec3{0, Real(-20) * cast->fraction, 0};
         const auto nearest = world->closest_point(end, 1);
