@@ -393,6 +393,9 @@ void PairLook::collide_parts(const Pair& pair,
         return;
     }
     collide(a.shape(), b.shape(), between, cache, geometry);
+    if (geometry.point_count == 0) {
+        return; // nor is there a normal
+    }
     const std::int32_t* normal = geometry.normal;
     const std::int32_t back[3] = {-normal[0], -normal[1], -normal[2]};
     std::uint32_t kept = 0;

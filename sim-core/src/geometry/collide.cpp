@@ -86,6 +86,9 @@ void collide_ordered(const ShapeInstance& first,
 }
 
 void swap_sides(ManifoldGeometry& manifold) {
+    if (manifold.point_count == 0) {
+        return; // nor is there a normal
+    }
     for (std::int32_t& component : manifold.normal) {
         component = -component;
     }

@@ -1,6 +1,8 @@
 #include "dynamics/contact_kernel_choice.h"
 #include "tests/support/dice.h"
 
+#include "lockwind/overflow.h"
+
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -306,7 +308,7 @@ void change_an_input(PairDraw& pairs, ContactBlock& block, Dice& dice) {
                                     &block.twist_lever_b[lane],
                                     &share_a};
     *inputs[dice.below(std::size(inputs))] ^= 1 << dice.below(20);
-    block.share_b[lane] = kCoefficientOne - share_a;
+    block.share_b[lane] = raw_subtract(kCoefficientOne, share_a);
 }
 
 TEST_P(SimdTest, KeepsRowsThatAreMadeFromTheSameOnly) {
@@ -322,7 +324,7 @@ TEST_P(SimdTest, KeepsRowsThatAreMadeFromTheSameOnly) {
         draw_block(*block, dice);
         pairs.draw(*block, dice);
         for (int lane = 0; lane < kBlockLanes; ++lane) {
-            block->share_b[lane] = kCoefficientOne - block->share_a[lane];
+            block->share_b[lane] = raw_subtract(kCoefficientOne, block->share_a[lane]);
         }
         kernels.prepare(pairs.terms, kRate, kSeparationMax, *inputs, *block);
         // A lane that is told not to be what it was made to is left alone.
