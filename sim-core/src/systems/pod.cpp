@@ -200,7 +200,7 @@ void PodSystem::apply_inputs(const DynamicsTables& tables,
                              const Table<Player>& players,
                              std::span<const SlotInput> inputs) {
     LOCKWIND_ASSERT(inputs.size() == pods_.size() && players.count() == pods_.size());
-    mark_supported(tables);
+    bool is_marked = false; // looking at all pairs costs something, and jumps are rare
     for (Slot slot = 0; slot < players.count(); ++slot) {
         const Parameters& pod = pods_[slot];
         Player& player = players[slot];
@@ -213,6 +213,10 @@ void PodSystem::apply_inputs(const DynamicsTables& tables,
             const auto gyration_radius = Length::from_raw(tables.properties[row].gyration_radius);
             balance(pod, input, convert<Real>(gyration_radius), motion);
             const bool pressed = (input.buttons & ~player.last_buttons & PlayerInput::kJump) != 0;
+            if (pressed && !is_marked) {
+                mark_supported(tables);
+                is_marked = true;
+            }
             if (pressed && supported_[row] != 0) {
                 Vec3 velocity = read_velocity(motion.linear_velocity);
                 velocity.y = std::max(velocity.y, Real(0)) + pod.jump_speed;
