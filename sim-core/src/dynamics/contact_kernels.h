@@ -19,6 +19,7 @@ struct ContactKernels {
                     std::int32_t separation_max,
                     RowInputs& inputs,
                     ContactBlock& block);
+    void (*read_speeds)(ContactBlock& block, SolverBody* bodies, PointSpeeds& out);
     Pass warm_start;
     Pass solve;
     Pass relax;
@@ -52,11 +53,16 @@ void visit_lanes(ContactBlock& block, SolverBody* bodies, int first, Visit&& vis
 }
 
 template <class L, class Visit>
+void visit_block(ContactBlock& block, SolverBody* bodies, Visit&& visit) {
+    for (int first = 0; first < block.lane_count; first += L::kWidth) {
+        visit_lanes<L>(block, bodies, first, visit);
+    }
+}
+
+template <class L, class Visit>
 void visit_blocks(std::span<ContactBlock> blocks, SolverBody* bodies, Visit&& visit) {
     for (ContactBlock& block : blocks) {
-        for (int first = 0; first < block.lane_count; first += L::kWidth) {
-            visit_lanes<L>(block, bodies, first, visit);
-        }
+        visit_block<L>(block, bodies, visit);
     }
 }
 
@@ -71,6 +77,9 @@ ContactKernels kernels_of() {
             for (int first = 0; first < block.lane_count; first += L::kWidth) {
                 BlockPreparation<L>(terms, inputs, block, first).run(substep_rate, separation_max);
             }
+        },
+        [](ContactBlock& block, SolverBody* bodies, PointSpeeds& out) {
+            visit_block<L>(block, bodies, [&](auto& solver) { solver.read_speeds(out); });
         },
         [](std::span<ContactBlock> blocks, SolverBody* bodies) {
             visit_blocks<L>(blocks, bodies, [](auto& solver) { solver.warm_start(); });

@@ -203,17 +203,17 @@ void ContactSolver::prepare(const StepConstants& constants,
     colouring_.run(tables, activity);
     layout_.run(tables, colouring_.contacts());
     fill_blocks(constants, tables, frames, bodies);
-    find_impacts(bodies);
 }
 
 void ContactSolver::fill_blocks(const StepConstants& constants,
                                 const DynamicsTables& tables,
                                 const BodyFrames& frames,
-                                const SolverBodies& bodies) {
+                                SolverBodies& bodies) {
     const PairReader reader{constants, tables, frames, bodies};
     PairTerms terms{};
+    impacts_.clear();
     const std::span<ContactBlock> blocks = layout_.blocks();
-    for (std::size_t index = 0; index < blocks.size(); ++index) {
+    for (std::uint32_t index = 0; index < blocks.size(); ++index) {
         ContactBlock& block = blocks[index];
         for (int lane = 0; lane < block.lane_count; ++lane) {
             reader.read(block, lane, terms);
@@ -221,28 +221,31 @@ void ContactSolver::fill_blocks(const StepConstants& constants,
         fill_padding(bodies.padding_row(), block, terms);
         kernels_.prepare(
             terms, constants.substep_rate, constants.separation_max, layout_.inputs(index), block);
+        find_impacts(index, bodies);
     }
 }
 
-void ContactSolver::find_impacts(SolverBodies& bodies) {
-    impacts_.clear();
-    const std::span<ContactBlock> blocks = layout_.blocks();
-    for (std::uint32_t index = 0; index < blocks.size(); ++index) {
-        ContactBlock& block = blocks[index];
-        for (int lane = 0; lane < block.lane_count; ++lane) {
-            const std::int64_t bound = std::int64_t{bodies.speed_bound(block.row_a[lane])} +
-                                       bodies.speed_bound(block.row_b[lane]);
-            if (bound < kBounceSpeed / 2) {
-                continue;
-            }
-            Impact impact{block.pair[lane], index, lane, {}, {}, 0};
-            visit_lanes<ScalarLanes>(block, bodies.bodies(), lane, [&](auto& solver) {
-                solver.read_speeds(impact.approach);
-            });
-            if (*std::min_element(impact.approach, impact.approach + kBlockPoints) <
-                -kBounceSpeed) {
-                impacts_.push_back(impact);
-            }
+/// Notes the block's contacts that approach fast enough to bounce.
+void ContactSolver::find_impacts(std::uint32_t index, SolverBodies& bodies) {
+    ContactBlock& block = layout_.blocks()[index];
+    std::int64_t bound = 0;
+    for (int lane = 0; lane < block.lane_count; ++lane) {
+        bound = std::max(bound,
+                         std::int64_t{bodies.speed_bound(block.row_a[lane])} +
+                             bodies.speed_bound(block.row_b[lane]));
+    }
+    if (bound < kBounceSpeed / 2) {
+        return;
+    }
+    PointSpeeds speeds;
+    kernels_.read_speeds(block, bodies.bodies(), speeds);
+    for (int lane = 0; lane < block.lane_count; ++lane) {
+        Impact impact{block.pair[lane], index, lane, {}, {}, 0};
+        for (int point = 0; point < block.point_count[lane]; ++point) {
+            impact.approach[point] = speeds.at[point][lane];
+        }
+        if (*std::min_element(impact.approach, impact.approach + kBlockPoints) < -kBounceSpeed) {
+            impacts_.push_back(impact);
         }
     }
 }

@@ -49,8 +49,8 @@ private:
     void fill_blocks(const StepConstants& constants,
                      const DynamicsTables& tables,
                      const BodyFrames& frames,
-                     const SolverBodies& bodies);
-    void find_impacts(SolverBodies& bodies);
+                     SolverBodies& bodies);
+    void find_impacts(std::uint32_t index, SolverBodies& bodies);
     void note_impacts();
     void bounce(const DynamicsTables& tables, SolverBodies& bodies, Impact& impact);
 

@@ -20,6 +20,11 @@ inline constexpr std::int32_t kImpulseMax = 960 * kVelocityOne;
 /// Of that, 480 m/s count for friction, so that a coefficient of 4 stays in the format.
 inline constexpr std::int32_t kFrictionLoadMax = 480 * kVelocityOne;
 
+/// Separating speeds of a block's points, Q11.20 m/s.
+struct alignas(64) PointSpeeds {
+    std::int32_t at[kBlockPoints][kBlockLanes];
+};
+
 /// The passes over one block's lanes from `first`, for contacts of kPoints points; in wider lanes,
 /// contacts that have fewer bear null rows.
 template <class L, std::uint32_t kPoints>
@@ -111,22 +116,25 @@ public:
         write_velocities();
     }
 
-    /// Separating speeds of the points at the bodies' present velocities. Scalar lanes only.
-    void read_speeds(std::int32_t* out) {
+    /// Separating speeds of the points at the bodies' present velocities; of those that a contact
+    /// does not have, anything.
+    void read_speeds(PointSpeeds& out) {
         read_velocities();
         const Wide along = speed_along(linear_);
+        LOCKWIND_UNROLL
         for (std::uint32_t point = 0; point < kPoints; ++point) {
-            out[point] = speed_at(point, along, angular_);
+            L::store(out.at[point] + first_, speed_at(point, along, angular_));
         }
     }
 
     /// Brings one point to a separating speed by an impulse that leaves `carried` + impulse >= 0;
     /// returns the impulse. Scalar lanes only.
     std::int32_t reach_speed(int point, std::int32_t target, std::int32_t carried) {
-        std::int32_t speed[kPoints] = {};
-        read_speeds(speed);
+        read_velocities();
+        const std::int32_t speed =
+            speed_at(static_cast<std::uint32_t>(point), speed_along(linear_), angular_);
         const std::int32_t lost =
-            scale(L::subtract(speed[point], target), factor(block_.point[point].row.mass));
+            scale(L::subtract(speed, target), factor(block_.point[point].row.mass));
         std::int32_t applied[kPoints] = {};
         applied[point] = L::subtract(L::maximum(L::subtract(carried, lost), 0), carried);
         apply_normal(applied);
