@@ -136,6 +136,7 @@ void clamp_length(std::int32_t v[3], std::int64_t longest) {
 
 void move_body(const StepConstants& constants,
                const BodyTravel& travel,
+               const std::int32_t* orientation,
                const BodyProperties& body,
                BodyMotion& motion,
                BodySleep& sleep) {
@@ -153,8 +154,8 @@ void move_body(const StepConstants& constants,
         bound += (std::min(length_bound(turn), kTurnMax) * body.bounding_radius) >> kUnitFraction;
     }
     count_motion(bound, motion, sleep);
-    if (travel.orientation != nullptr) {
-        std::copy(travel.orientation, travel.orientation + 4, motion.orientation);
+    if (orientation != nullptr) {
+        std::copy(orientation, orientation + 4, motion.orientation);
     } else if (turns_freely(body, travel.angular, turn, constants.substeps)) {
         turn_freely(constants, travel.angular, body, motion);
     } else if ((turn[0] | turn[1] | turn[2]) != 0) {

@@ -12,15 +12,15 @@ namespace lockwind {
 struct BodyTravel {
     std::int64_t linear[3];
     std::int64_t angular[3];
-    const std::int32_t* orientation; // Q2.30 at the tick's end, where it is known; else null
 };
 
 /// Moves and turns a body that is not fixed by what it travelled in a tick, and counts how far. A
-/// dynamic body whose principal inertias differ and whose orientation is not given turns as a free
-/// rigid body and angular_velocity changes with it (gyroscopic torque). A turn is at most 4 rad a
-/// tick about each axis.
+/// dynamic body whose principal inertias differ and whose `orientation` at the tick's end (Q2.30)
+/// is null turns as a free rigid body and angular_velocity changes with it (gyroscopic torque). A
+/// turn is at most 4 rad a tick about each axis.
 void move_body(const StepConstants& constants,
                const BodyTravel& travel,
+               const std::int32_t* orientation,
                const BodyProperties& body,
                BodyMotion& motion,
                BodySleep& sleep);

@@ -64,8 +64,8 @@ bool may_overreach(const BodyProperties& body) {
 } // namespace
 
 SolverBodies::SolverBodies(std::uint32_t capacity)
-    : padding_row_(capacity), bodies_(std::size_t{capacity} + 1), terms_(capacity),
-      courses_(capacity), speed_bound_(capacity), slender_(capacity) {
+    : padding_row_(capacity), bodies_(std::size_t{capacity} + 1), terms_(capacity), free_(capacity),
+      courses_(capacity), orientations_(capacity), speed_bound_(capacity), slender_(capacity) {
     dynamic_rows_.reserve(capacity);
     kinematic_rows_.reserve(capacity);
 }
@@ -98,6 +98,8 @@ void SolverBodies::read_body(const StepConstants& constants,
     Course& course = courses_[row];
     solver = SolverBody{};
     course = Course{};
+    free_[row] = FreeVelocity{};
+    orientations_[row] = nullptr;
     speed_bound_[row] = 0;
     if (body.mode == kFixed) {
         return;
@@ -141,16 +143,16 @@ void SolverBodies::integrate_velocities(const StepConstants& constants, std::uin
     const std::int32_t* gravity = constants.gravity[substep];
     for (const BodyRow row : dynamic_rows_) {
         SolverBody& body = bodies_[row];
-        Course& course = courses_[row];
+        FreeVelocity& free = free_[row];
         for (int axis = 0; axis < 3; ++axis) {
             const std::int32_t linear_change =
-                substep == 0 ? 0 : raw_subtract(body.linear[axis], course.linear_free[axis]);
+                substep == 0 ? 0 : raw_subtract(body.linear[axis], free.linear[axis]);
             const std::int32_t angular_change =
-                substep == 0 ? 0 : raw_subtract(body.angular[axis], course.angular_free[axis]);
-            course.linear_free[axis] = raw_add(body.linear[axis], gravity[axis]);
-            course.angular_free[axis] = body.angular[axis];
-            body.linear[axis] = raw_add(course.linear_free[axis], linear_change);
-            body.angular[axis] = raw_add(course.angular_free[axis], angular_change);
+                substep == 0 ? 0 : raw_subtract(body.angular[axis], free.angular[axis]);
+            free.linear[axis] = raw_add(body.linear[axis], gravity[axis]);
+            free.angular[axis] = body.angular[axis];
+            body.linear[axis] = raw_add(free.linear[axis], linear_change);
+            body.angular[axis] = raw_add(free.angular[axis], angular_change);
         }
     }
 }
@@ -169,10 +171,10 @@ void SolverBodies::give(BodyRow row, const std::int64_t linear[3], const std::in
             now = next;
         };
     SolverBody& body = bodies_[row];
-    Course& course = courses_[row];
+    FreeVelocity& velocity = free_[row];
     for (int axis = 0; axis < 3; ++axis) {
-        change(body.linear[axis], course.linear_free[axis], linear[axis], kLinearMax);
-        change(body.angular[axis], course.angular_free[axis], angular[axis], kAngularMax);
+        change(body.linear[axis], velocity.linear[axis], linear[axis], kLinearMax);
+        change(body.angular[axis], velocity.angular[axis], angular[axis], kAngularMax);
     }
 }
 
@@ -199,7 +201,8 @@ void SolverBodies::write(const StepConstants& constants, const DynamicsTables& t
         const BodyProperties& body = tables.properties[row];
         std::copy(bodies_[row].linear, bodies_[row].linear + 3, motion.linear_velocity);
         std::copy(bodies_[row].angular, bodies_[row].angular + 3, motion.angular_velocity);
-        move_body(constants, courses_[row].travel, body, motion, tables.sleep[row]);
+        move_body(
+            constants, courses_[row].travel, orientations_[row], body, motion, tables.sleep[row]);
         clamp_velocities(constants, body, motion);
     }
 }
@@ -213,7 +216,12 @@ void SolverBodies::write_kinematic(const StepConstants& constants, const Dynamic
             travel.angular[axis] =
                 std::int64_t{bodies_[row].angular_moved[axis]} * constants.substeps;
         }
-        move_body(constants, travel, tables.properties[row], tables.motion[row], tables.sleep[row]);
+        move_body(constants,
+                  travel,
+                  nullptr,
+                  tables.properties[row],
+                  tables.motion[row],
+                  tables.sleep[row]);
     }
 }
 

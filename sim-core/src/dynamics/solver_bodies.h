@@ -35,7 +35,7 @@ public:
     /// The body's orientation at the tick's end, of one that is followed substep by substep;
     /// `orientation` must live until write().
     void set_orientation(BodyRow row, const std::int32_t* orientation) {
-        courses_[row].travel.orientation = orientation;
+        orientations_[row] = orientation;
     }
     /// What is dynamic; places, too.
     void write(const StepConstants& constants, const DynamicsTables& tables);
@@ -69,10 +69,14 @@ public:
     std::int32_t speed_bound(BodyRow row) const { return speed_bound_[row]; }
 
 private:
-    /// Velocities before the contacts' impulses of a substep, and the substeps' sum.
+    // Apart, because each is gone over in every substep, and never with the others.
+    /// Velocities before the contacts' impulses of a substep.
+    struct FreeVelocity {
+        std::int32_t linear[3];
+        std::int32_t angular[3];
+    };
+    /// What the positions' steps add up.
     struct Course {
-        std::int32_t linear_free[4];
-        std::int32_t angular_free[4];
         BodyTravel travel;
         std::int32_t linear_speed_max;
         std::int32_t angular_speed_max;
@@ -86,7 +90,9 @@ private:
     BodyRow padding_row_;
     std::vector<SolverBody> bodies_;
     std::vector<BodyTerms> terms_;
+    std::vector<FreeVelocity> free_;
     std::vector<Course> courses_;
+    std::vector<const std::int32_t*> orientations_; // see set_orientation(); else null
     std::vector<std::int32_t> speed_bound_;
     std::vector<std::uint8_t> slender_;
     std::vector<BodyRow> dynamic_rows_;
