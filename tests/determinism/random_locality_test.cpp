@@ -103,14 +103,18 @@ std::span<const Row> rows_of(World& world, std::uint32_t section) {
 struct Tables {
     explicit Tables(World& world)
         : motion(rows_of<BodyMotion>(world, section::kBody)),
-          properties(rows_of<BodyProperties>(world, section::kBodyProperties)),
+          kinds(rows_of<BodyProperties>(world, section::kBodyKind)),
+          lives(rows_of<BodyLife>(world, section::kBodyLife)),
           sleep(rows_of<BodySleep>(world, section::kBodySleep)),
           pairs(rows_of<Pair>(world, section::kPair)),
           manifolds(rows_of<Manifold>(world, section::kManifold)),
           impulses(rows_of<ContactImpulse>(world, section::kContactImpulse)) {}
 
+    const BodyProperties& properties(BodyRow row) const { return kinds[lives[row].body_kind]; }
+
     std::span<const BodyMotion> motion;
-    std::span<const BodyProperties> properties;
+    std::span<const BodyProperties> kinds;
+    std::span<const BodyLife> lives;
     std::span<const BodySleep> sleep;
     std::span<const Pair> pairs;
     std::span<const Manifold> manifolds;
@@ -179,7 +183,7 @@ Shared shared_rows(World& part_world, World& whole_world) {
         }
         twin[row] = other;
         const bool same = same_bits(part.motion[row], whole.motion[other]) &&
-                          same_bits(part.properties[row], whole.properties[other]) &&
+                          same_bits(part.properties(row), whole.properties(other)) &&
                           same_bits(part.sleep[row], whole.sleep[other]);
         EXPECT_TRUE(same) << "body " << part.motion[row].id << ", tick " << part_world.tick();
         shared.bodies += same ? 1 : 0;

@@ -114,13 +114,4 @@ void BodyKinds::release(const Table<BodyProperties>& kinds, std::uint32_t kind) 
     kinds.set_count(count);
 }
 
-void expand_kinds(const Table<BodyProperties>& kinds,
-                  const Table<BodyLife>& lives,
-                  const Table<BodyProperties>& properties) {
-    properties.set_count(lives.count());
-    for (BodyRow row = 0; row < lives.count(); ++row) {
-        properties[row] = kinds[lives[row].body_kind];
-    }
-}
-
 } // namespace lockwind

@@ -41,9 +41,4 @@ private:
     std::vector<std::uint32_t> next_;    // by kind: the next one in its bucket
 };
 
-/// Makes the derived properties of all bodies from their kinds.
-void expand_kinds(const Table<BodyProperties>& kinds,
-                  const Table<BodyLife>& lives,
-                  const Table<BodyProperties>& properties);
-
 } // namespace lockwind

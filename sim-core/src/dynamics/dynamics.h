@@ -2,6 +2,7 @@
 
 #include "base/table.h"
 #include "dynamics/body.h"
+#include "dynamics/body_properties_view.h"
 #include "dynamics/contact.h"
 #include "dynamics/joint.h"
 #include "geometry/shape_library.h"
@@ -31,18 +32,18 @@ struct DynamicsSettings {
     std::uint32_t joint_capacity = 0;
 };
 
-/// Views of the arena's sections; motion, properties, lives and sleep have the same rows, and so
-/// have manifolds and impulses. The step itself needs neither kinds nor lives.
+/// Views of the arena's sections; motion, lives and sleep have the same rows, and so have manifolds
+/// and impulses.
 struct DynamicsTables {
     Table<BodyMotion> motion;
     Table<BodyProperties> kinds;
     Table<BodyLife> lives;
-    Table<BodyProperties> properties;
     Table<BodySleep> sleep;
     Table<Pair> pairs;
     Table<Manifold> manifolds;
     Table<ContactImpulse> impulses;
     Table<Joint> joints;
+    BodyPropertiesView properties{kinds, lives};
 };
 
 /// A capacity that ran out, or a body that left the bounds where that is an error. The tables stay

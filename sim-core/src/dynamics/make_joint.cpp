@@ -206,18 +206,20 @@ const char* bad_joint_bodies(const DynamicsTables& tables, const Joint& joint) {
     if (is_grab ? joint.row_a != kNoIndex : joint.row_a >= count) {
         return "row_a";
     }
-    if (joint.row_b >= count || joint.row_b == joint.row_a ||
-        !(is_dynamic(tables, joint.row_a) || is_dynamic(tables, joint.row_b))) {
+    if (joint.row_b >= count || joint.row_b == joint.row_a) {
         return "row_b";
     }
     constexpr std::int64_t kAnchorMax = convert<Length>(kJointAnchorMax).raw();
-    if (!all_within<std::int32_t>(joint.anchor_a, -kAnchorMax, kAnchorMax) ||
-        (!is_grab && is_long(tables.properties[joint.row_a], joint.anchor_a))) {
+    if (!all_within<std::int32_t>(joint.anchor_a, -kAnchorMax, kAnchorMax)) {
         return "anchor_a";
     }
-    if (!all_within<std::int32_t>(joint.anchor_b, -kAnchorMax, kAnchorMax) ||
-        is_long(tables.properties[joint.row_b], joint.anchor_b)) {
+    if (!all_within<std::int32_t>(joint.anchor_b, -kAnchorMax, kAnchorMax)) {
         return "anchor_b";
+    }
+    const BodyProperties* a = is_grab ? nullptr : &tables.properties[joint.row_a];
+    if (const char* field = bad_joint_side(joint, a, tables.properties[joint.row_b]);
+        field != nullptr) {
+        return field;
     }
     if (!is_unit(joint.frame_a)) {
         return "frame_a";
@@ -330,6 +332,16 @@ Status make_joint(const JointDefinition& definition,
     }
     joint = made;
     return Success{};
+}
+
+const char* bad_joint_side(const Joint& joint, const BodyProperties* a, const BodyProperties& b) {
+    if ((a == nullptr || a->mode != kDynamic) && b.mode != kDynamic) {
+        return "row_b";
+    }
+    if (a != nullptr && is_long(*a, joint.anchor_a)) {
+        return "anchor_a";
+    }
+    return is_long(b, joint.anchor_b) ? "anchor_b" : nullptr;
 }
 
 const char* bad_joint_field(const DynamicsTables& tables, const Joint& joint) {

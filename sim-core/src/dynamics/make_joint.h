@@ -33,4 +33,8 @@ Status make_joint(const JointDefinition& definition,
 /// the order of rows.
 const char* bad_joint_field(const DynamicsTables& tables, const Joint& joint);
 
+/// Null, or the field for which a joint cannot be between bodies with these properties; a grab has
+/// no A.
+const char* bad_joint_side(const Joint& joint, const BodyProperties* a, const BodyProperties& b);
+
 } // namespace lockwind

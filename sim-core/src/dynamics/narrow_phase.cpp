@@ -187,10 +187,9 @@ class PairLook {
 public:
     PairLook(const DynamicsTables& tables,
              const BodyFrames& frames,
-             std::span<const LookTerms> terms,
              const Foresight& foresight,
              ManifoldSlots& slots)
-        : tables_(tables), frames_(frames), terms_(terms), foresight_(foresight), slots_(slots) {}
+        : tables_(tables), frames_(frames), foresight_(foresight), slots_(slots) {}
 
     /// Looks for what the two will meet within `reach`, too. False where the manifold table is
     /// full. The pair then does not touch.
@@ -218,7 +217,6 @@ private:
 
     const DynamicsTables& tables_;
     const BodyFrames& frames_;
-    std::span<const LookTerms> terms_;
     const Foresight& foresight_;
     ManifoldSlots& slots_;
     bool is_foreseen_ = false;
@@ -228,21 +226,30 @@ bool is_touching(const Pair& pair) {
     return pair.point_count != 0;
 }
 
+/// Q9.22 m: how far a body's turn may move a contact point before its manifold is made anew: an
+/// eighth of the bounding radius; a very slender one's long axis must not leave the body by that.
+std::int64_t turn_bound(const BodyProperties& body) {
+    return body.bounding_radius >> (is_very_slender(body) ? 5 : 3);
+}
+
 /// True where no contact point has drifted or turned enough for its manifold to be made anew.
 /// Keeping it is what lets tall stacks stand: the solver's rows then stay exactly the same.
 bool PairLook::is_still(const Pair& pair) const {
-    const LookTerms& a = terms_[pair.row_a];
-    const LookTerms& b = terms_[pair.row_b];
-    if (!is_touching(pair) || !a.flat || !b.flat) {
-        return false;
-    }
     const BodyFrame& frame_a = frames_[pair.row_a];
     const BodyFrame& frame_b = frames_[pair.row_b];
+    if (!is_touching(pair) || !is_flat(frame_a.shape) || !is_flat(frame_b.shape)) {
+        return false;
+    }
     const Manifold& manifold = tables_.manifolds[pair.manifold];
     std::int32_t delta[3];
     pair_delta(frame_a, frame_b, tables_.motion[pair.row_a], tables_.motion[pair.row_b], delta);
-    const TurnSince turn_of_a(frame_a, manifold.orientation_a, a.turns);
-    const TurnSince turn_of_b(frame_b, manifold.orientation_b, b.turns);
+    // A fixed body does not turn.
+    const BodyProperties& a = tables_.properties[pair.row_a];
+    const BodyProperties& b = tables_.properties[pair.row_b];
+    const TurnSince turn_of_a(frame_a, manifold.orientation_a, a.mode != kFixed);
+    const TurnSince turn_of_b(frame_b, manifold.orientation_b, b.mode != kFixed);
+    const std::int64_t turn_bound_a = turn_bound(a);
+    const std::int64_t turn_bound_b = turn_bound(b);
     for (std::uint32_t point = 0; point < pair.point_count; ++point) {
         const std::int32_t* anchor_a = manifold.anchor_a + 3 * point;
         std::int32_t anchor_b[3];
@@ -257,8 +264,8 @@ bool PairLook::is_still(const Pair& pair) const {
         for (int axis = 0; axis < 3; ++axis) {
             const std::int64_t drift = std::int64_t{delta[axis]} - manifold.centre_delta[axis] +
                                        turn_b[axis] - turn_a[axis];
-            if (magnitude(drift) > kDriftMax || magnitude(turn_a[axis]) > a.turn_bound ||
-                magnitude(turn_b[axis]) > b.turn_bound) {
+            if (magnitude(drift) > kDriftMax || magnitude(turn_a[axis]) > turn_bound_a ||
+                magnitude(turn_b[axis]) > turn_bound_b) {
                 return false;
             }
             square += drift * drift;
@@ -489,12 +496,6 @@ bool is_sound(const Pair& pair, const DynamicsTables& tables) {
     return pair.point_count <= kManifoldPointsMax && pair.manifold < tables.manifolds.count();
 }
 
-/// Q9.22 m: how far a body's turn may move a contact point before its manifold is made anew: an
-/// eighth of the bounding radius; a very slender one's long axis must not leave the body by that.
-std::int32_t turn_bound(const BodyProperties& body) {
-    return body.bounding_radius >> (is_very_slender(body) ? 5 : 3);
-}
-
 bool has_plane_only(const Pair& pair, const BodyFrames& frames) {
     return !is_bounded(frames[pair.row_a].shape.type) && !is_bounded(frames[pair.row_b].shape.type);
 }
@@ -518,27 +519,23 @@ void tangent_of(const std::int32_t normal[3], std::int32_t tangent[3]) {
 }
 
 NarrowPhase::NarrowPhase(const DynamicsSettings& settings)
-    : foresight_(settings), terms_(settings.body_capacity), joined_(settings.joint_capacity) {
+    : foresight_(settings), gates_(settings.body_capacity), joined_(settings.joint_capacity) {
     foreseen_.reserve(settings.manifold_capacity);
     changed_.reserve(settings.pair_capacity);
 }
 
-void NarrowPhase::read_terms(const DynamicsTables& tables,
+void NarrowPhase::read_gates(const DynamicsTables& tables,
                              const BodyFrames& frames,
                              std::span<const BodyRow> rows) {
     for (const BodyRow row : rows) {
-        const BodyProperties& body = tables.properties[row];
-        terms_[row] = {tables.sleep[row].moved,
-                       is_flat(frames[row].shape),
-                       body.mode != kFixed,
-                       foresight_.reach(tables, row),
-                       turn_bound(body)};
+        gates_[row] = {
+            tables.sleep[row].moved, is_flat(frames[row].shape), foresight_.reach(tables, row)};
     }
 }
 
 bool NarrowPhase::needs_look(const Pair& pair) const {
-    const LookTerms& a = terms_[pair.row_a];
-    const LookTerms& b = terms_[pair.row_b];
+    const Gate& a = gates_[pair.row_a];
+    const Gate& b = gates_[pair.row_b];
     const bool bears_more = is_touching(pair) && a.flat && b.flat;
     const MotionBound bound = bears_more ? MotionBound::touching : MotionBound::other;
     return ((a.moved | b.moved) & bit_of(bound)) != 0 || (a.reach | b.reach) != 0;
@@ -546,7 +543,7 @@ bool NarrowPhase::needs_look(const Pair& pair) const {
 
 /// How far ahead the two are to be looked for, Q9.22 m.
 std::int32_t NarrowPhase::reach_of(const Pair& pair) const {
-    const std::int64_t both = std::int64_t{terms_[pair.row_a].reach} + terms_[pair.row_b].reach;
+    const std::int64_t both = std::int64_t{gates_[pair.row_a].reach} + gates_[pair.row_b].reach;
     return static_cast<std::int32_t>(std::min(both, std::int64_t{foresight_.reach_max()}));
 }
 
@@ -556,9 +553,9 @@ StepFault NarrowPhase::run(const DynamicsTables& tables,
                            ManifoldSlots& slots,
                            std::vector<ContactChange>& changes) {
     joined_.read(tables.joints);
-    read_terms(tables, frames, activity.rows());
-    read_terms(tables, frames, activity.partners());
-    PairLook look(tables, frames, terms_, foresight_, slots);
+    read_gates(tables, frames, activity.rows());
+    read_gates(tables, frames, activity.partners());
+    PairLook look(tables, frames, foresight_, slots);
     foreseen_.clear();
     changed_.clear();
     StepFault fault = StepFault::none;

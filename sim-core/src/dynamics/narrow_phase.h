@@ -13,15 +13,6 @@
 
 namespace lockwind {
 
-/// What of a body decides about a look at its pairs, close together: most need none.
-struct LookTerms {
-    std::uint8_t moved; // BodySleep::moved
-    bool flat;
-    bool turns;
-    std::int32_t reach;      // see Foresight
-    std::int32_t turn_bound; // Q9.22 m that a turn may move a point of a manifold that is kept
-};
-
 /// Looks at the pairs whose bodies moved: makes, renews and frees their manifolds.
 class NarrowPhase {
 public:
@@ -40,14 +31,20 @@ public:
     void forget_foreseen(const DynamicsTables& tables, ManifoldSlots& slots);
 
 private:
-    void read_terms(const DynamicsTables& tables,
+    /// What decides about a look, close together for the pairs that need none.
+    struct Gate {
+        std::uint8_t moved; // BodySleep::moved
+        bool flat;
+        std::int32_t reach; // see Foresight
+    };
+    void read_gates(const DynamicsTables& tables,
                     const BodyFrames& frames,
                     std::span<const BodyRow> rows);
     bool needs_look(const Pair& pair) const;
     std::int32_t reach_of(const Pair& pair) const;
 
     Foresight foresight_;
-    std::vector<LookTerms> terms_;
+    std::vector<Gate> gates_;
     std::vector<std::uint32_t> foreseen_; // pairs with a manifold for this tick alone
     std::vector<std::uint32_t> changed_;
     JoinedPairs joined_;

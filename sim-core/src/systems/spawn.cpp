@@ -9,14 +9,12 @@ namespace {
 void move_body(const DynamicsTables& tables, BodyRow from, BodyRow to) {
     tables.motion[to] = tables.motion[from];
     tables.lives[to] = tables.lives[from];
-    tables.properties[to] = tables.properties[from];
     tables.sleep[to] = tables.sleep[from];
 }
 
 void set_body_count(const DynamicsTables& tables, std::uint32_t count) {
     tables.motion.set_count(count);
     tables.lives.set_count(count);
-    tables.properties.set_count(count);
     tables.sleep.set_count(count);
 }
 
@@ -76,11 +74,10 @@ void Spawner::number_rows(const Table<BodyMotion>& motion) {
     }
 }
 
-void Spawner::find_kinds(const DynamicsTables& tables) {
-    kinds_.begin();
-    for (BodyRow row = 0; row < tables.motion.count(); ++row) {
-        tables.lives[row].body_kind = kinds_.take(tables.kinds, tables.properties[row]);
-    }
+void Spawner::give_kind(const DynamicsTables& tables,
+                        BodyRow row,
+                        const BodyProperties& properties) {
+    tables.lives[row].body_kind = kinds_.take(tables.kinds, properties);
 }
 
 void Spawner::redefine(const DynamicsTables& tables,
@@ -88,8 +85,7 @@ void Spawner::redefine(const DynamicsTables& tables,
                        const BodyProperties& properties) {
     kinds_.know(tables.kinds, tables.lives);
     kinds_.release(tables.kinds, tables.lives[row].body_kind);
-    tables.lives[row].body_kind = kinds_.take(tables.kinds, properties);
-    tables.properties[row] = properties;
+    give_kind(tables, row, properties);
 }
 
 /// Of the bodies that go.
@@ -105,8 +101,7 @@ void Spawner::release_kinds(const DynamicsTables& tables) {
 /// Of the bodies that came.
 void Spawner::take_kinds(const DynamicsTables& tables) {
     for (const BodyRecord& body : created_) {
-        tables.lives[row_of(tables.motion, body.motion.id)].body_kind =
-            kinds_.take(tables.kinds, body.properties);
+        give_kind(tables, row_of(tables.motion, body.motion.id), body.properties);
     }
 }
 
@@ -162,7 +157,6 @@ StepFault Spawner::apply(const DynamicsTables& tables) {
             --target;
             tables.motion[target] = body.motion;
             tables.lives[target] = body.life;
-            tables.properties[target] = body.properties;
             tables.sleep[target] = BodySleep{};
         }
         take_kinds(tables);

@@ -55,8 +55,10 @@ public:
         kinds_.forget();
     }
 
-    /// Of tables without kinds: gives each body its own.
-    void find_kinds(const DynamicsTables& tables);
+    /// Of a world without kinds.
+    void begin_kinds() { kinds_.begin(); }
+    /// To a body that has none.
+    void give_kind(const DynamicsTables& tables, BodyRow row, const BodyProperties& properties);
     /// Gives a body other properties.
     void redefine(const DynamicsTables& tables, BodyRow row, const BodyProperties& properties);
     /// Whether the kinds are such as this class leaves them; see BodyKinds::read.

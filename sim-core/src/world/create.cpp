@@ -32,7 +32,6 @@ std::array<std::uint32_t, section::kCount> capacities_of(const DynamicsSettings&
     rows[section::kBody] = capacities.body_capacity;
     rows[section::kBodyKind] = capacities.body_capacity;
     rows[section::kBodyLife] = capacities.body_capacity;
-    rows[section::kBodyProperties] = capacities.body_capacity;
     rows[section::kBodySleep] = capacities.body_capacity;
     rows[section::kPair] = capacities.pair_capacity;
     rows[section::kManifold] = capacities.manifold_capacity;
@@ -44,7 +43,9 @@ std::array<std::uint32_t, section::kCount> capacities_of(const DynamicsSettings&
 
 Status make_bodies(const WorldDefinition& definition,
                    const ShapeLibrary& shapes,
-                   const DynamicsTables& tables) {
+                   std::span<const Player> players,
+                   const DynamicsTables& tables,
+                   Spawner& spawner) {
     std::vector<const BodyDefinition*> sorted;
     for (const BodyDefinition& body : definition.bodies) {
         sorted.push_back(&body);
@@ -54,17 +55,22 @@ Status make_bodies(const WorldDefinition& definition,
     });
     tables.motion.set_count(static_cast<std::uint32_t>(sorted.size()));
     tables.lives.set_count(static_cast<std::uint32_t>(sorted.size()));
-    tables.properties.set_count(static_cast<std::uint32_t>(sorted.size()));
     tables.sleep.set_count(static_cast<std::uint32_t>(sorted.size()));
+    spawner.begin_kinds();
     for (BodyRow row = 0; row < sorted.size(); ++row) {
-        if (Status made = make_body(*sorted[row],
-                                    definition.settings,
-                                    shapes,
-                                    tables.motion[row],
-                                    tables.properties[row]);
+        BodyProperties properties{};
+        if (Status made = make_body(
+                *sorted[row], definition.settings, shapes, tables.motion[row], properties);
             !made) {
             return made;
         }
+        const bool is_pod = std::any_of(players.begin(), players.end(), [&](const Player& player) {
+            return player.body == sorted[row]->id;
+        });
+        if (is_pod) {
+            properties.can_sleep = 0; // its player may move at any tick
+        }
+        spawner.give_kind(tables, row, properties);
     }
     return Success{};
 }
@@ -113,7 +119,6 @@ DynamicsTables World::Impl::tables_of(StateArena& arena) {
     return {arena.table<BodyMotion>(section::kBody),
             arena.table<BodyProperties>(section::kBodyKind),
             arena.table<BodyLife>(section::kBodyLife),
-            arena.table<BodyProperties>(section::kBodyProperties),
             arena.table<BodySleep>(section::kBodySleep),
             arena.table<Pair>(section::kPair),
             arena.table<Manifold>(section::kManifold),
@@ -143,7 +148,9 @@ Result<WorldPtr> World::create(const WorldDefinition& definition, Simd simd) {
     auto impl = std::make_unique<Impl>(
         definition, capacities, simd, std::move(shapes).value(), std::move(pods).value());
     const DynamicsTables tables = impl->tables();
-    if (Status status = make_bodies(definition, impl->shapes, tables); !status) {
+    const std::vector<Player> players = impl->pods.initial_players();
+    if (Status status = make_bodies(definition, impl->shapes, players, tables, impl->spawner);
+        !status) {
         return status.error();
     }
     if (Status status = make_joints(definition, impl->shapes, tables); !status) {
@@ -151,19 +158,16 @@ Result<WorldPtr> World::create(const WorldDefinition& definition, Simd simd) {
     }
     impl->arena.set_row_count(section::kGlobals, 1);
     impl->globals().seed = definition.settings.seed;
-    const std::vector<Player> players = impl->pods.initial_players();
     impl->players().set_count(static_cast<std::uint32_t>(players.size()));
     for (Slot slot = 0; slot < players.size(); ++slot) {
         impl->players()[slot] = players[slot];
         const BodyRow row = row_of(tables.motion, players[slot].body);
-        tables.properties[row].can_sleep = 0; // its player may move at any tick
         BodyRecord start{tables.motion[row], tables.properties[row], {}};
         write_velocity({}, start.motion.linear_velocity);
         write_velocity({}, start.motion.angular_velocity);
         impl->pod_starts.push_back(start);
         impl->pod_ids.push_back(players[slot].body);
     }
-    impl->spawner.find_kinds(tables);
     return WorldPtr(new World(std::move(impl)));
 }
 

@@ -24,7 +24,6 @@ Status World::Impl::validate(StateArena& state, const DynamicsTables* known) {
     if (!kinds) {
         return kinds;
     }
-    expand_kinds(rows.kinds, rows.lives, rows.properties);
     if (Status status = check_bodies(rows, settings.level_of_detail); !status) {
         return status;
     }
@@ -109,7 +108,6 @@ PageVersions& World::Impl::looked_at() {
 }
 
 void World::Impl::derive(const DynamicsTables& rows) {
-    expand_kinds(rows.kinds, rows.lives, rows.properties);
     dynamics.derive_pairs(rows);
 }
 

@@ -53,9 +53,8 @@ inline constexpr std::uint32_t kJoint = 8;
 inline constexpr std::uint32_t kPlayer = 9;
 inline constexpr std::uint32_t kStateCount = 10;
 // Derived.
-inline constexpr std::uint32_t kBodyProperties = 10;
-inline constexpr std::uint32_t kPair = 11;
-inline constexpr std::uint32_t kCount = 12;
+inline constexpr std::uint32_t kPair = 10;
+inline constexpr std::uint32_t kCount = 11;
 } // namespace section
 
 inline constexpr std::array kRowCountsFields{
@@ -91,7 +90,6 @@ inline constexpr std::array<SectionDescriptor, section::kCount> kWorldSections{{
     {"contact_impulse", "dynamics", sizeof(ContactImpulse), false, "", kContactImpulseFields},
     {"joint", "dynamics", sizeof(Joint), false, "id", kJointFields},
     {"player", "systems", sizeof(Player), false, "", kPlayerFields},
-    {"body_properties", "dynamics", sizeof(BodyProperties), true, "", kBodyPropertiesFields},
     {"pair", "dynamics", sizeof(Pair), true, "", kPairFields},
 }};
 

@@ -70,6 +70,9 @@ public:
         state_.manifolds.resize(manifold_capacity());
         state_.impulses.resize(manifold_capacity());
         state_.joints.resize(capacity);
+        for (BodyRow row = 0; row < capacity; ++row) {
+            lives_.push_back({row, 0, 0}); // each body is a kind of its own
+        }
         renew();
     }
 
@@ -130,9 +133,8 @@ public:
 
     DynamicsTables tables() {
         return {{state_.motion.data(), &state_.motion_count, capacity_},
-                {nullptr, &no_kinds_, 0},
-                {nullptr, &no_kinds_, 0},
                 {state_.properties.data(), &state_.properties_count, capacity_},
+                {lives_.data(), &state_.motion_count, capacity_},
                 {state_.sleep.data(), &state_.sleep_count, capacity_},
                 {state_.pairs.data(), &state_.pair_count, pair_capacity()},
                 {state_.manifolds.data(), &state_.manifold_count, manifold_capacity()},
@@ -199,7 +201,7 @@ public:
 private:
     WorldSettings settings_;
     std::uint32_t sleep_ticks_ = 0;
-    std::uint32_t no_kinds_ = 0;
+    std::vector<BodyLife> lives_;
     std::uint32_t capacity_;
     std::uint32_t pair_capacity_;
     std::uint32_t manifold_capacity_;

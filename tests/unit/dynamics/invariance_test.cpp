@@ -276,7 +276,7 @@ TEST(Tables, RemovingRowsDropsTheirPairsAndRenumbersTheRest) {
     const std::uint32_t before = state.manifold_count;
     remap_rows(bench.tables(), new_row);
     bench.tables().motion.set_count(kept);
-    bench.tables().properties.set_count(kept);
+    bench.tables().kinds.set_count(kept);
     check_tables(bench);
     EXPECT_LE(state.manifold_count, before);
     EXPECT_GT(state.manifold_count, 0U);

@@ -292,8 +292,9 @@ TEST(Snapshot, RefusesDamagedContacts) {
         {"arm of a point",
          [](World& w) {
              const Manifold& m = manifold(w);
-             const auto* bodies = rows<BodyProperties>(w, section::kBodyProperties);
-             manifold(w).anchor_a[1] = m.centre_delta[1] + bodies[m.row_b].bounding_radius * 3 / 2;
+             const BodyLife& life = rows<BodyLife>(w, section::kBodyLife)[m.row_b];
+             const BodyProperties& b = rows<BodyProperties>(w, section::kBodyKind)[life.body_kind];
+             manifold(w).anchor_a[1] = m.centre_delta[1] + b.bounding_radius * 3 / 2;
          }},
         {"a point past the count",
          [](World& w) {

@@ -16,14 +16,13 @@ namespace {
 constexpr BodyId kKinds = 7; // of records
 
 constexpr std::array<std::uint32_t, section::kCount> kCapacities{
-    1, 1, 32, 32, 32, 32, 200, 200, 8, 4, 32, 200};
+    1, 1, 32, 32, 32, 32, 200, 200, 8, 4, 200};
 
 struct Tables {
     StateArena arena{kWorldSections, kCapacities};
     DynamicsTables dynamics{arena.table<BodyMotion>(section::kBody),
                             arena.table<BodyProperties>(section::kBodyKind),
                             arena.table<BodyLife>(section::kBodyLife),
-                            arena.table<BodyProperties>(section::kBodyProperties),
                             arena.table<BodySleep>(section::kBodySleep),
                             arena.table<Pair>(section::kPair),
                             arena.table<Manifold>(section::kManifold),
@@ -34,12 +33,11 @@ struct Tables {
         const std::uint32_t row = dynamics.motion.count();
         dynamics.motion.set_count(row + 1);
         dynamics.lives.set_count(row + 1);
-        dynamics.properties.set_count(row + 1);
         dynamics.sleep.set_count(row + 1);
         dynamics.motion[row].id = id;
-        dynamics.properties[row].friction = static_cast<std::int32_t>(1 + id % kKinds);
-        dynamics.lives[row] = {
-            kind_of(dynamics.properties[row]), static_cast<std::uint32_t>(id), 0};
+        BodyProperties properties{};
+        properties.friction = static_cast<std::int32_t>(1 + id % kKinds);
+        dynamics.lives[row] = {kind_of(properties), static_cast<std::uint32_t>(id), 0};
     }
     std::uint32_t kind_of(const BodyProperties& properties) {
         std::uint32_t kind = 0;
@@ -128,12 +126,10 @@ TEST(Spawner, MergesLikeASortedMap) {
         for (const auto& [id, lives] : model) {
             EXPECT_EQ(tables.dynamics.motion[row].id, id) << "seed " << seed;
             const BodyLife& life = tables.dynamics.lives[row];
-            const BodyProperties& properties = tables.dynamics.properties[row];
             EXPECT_EQ(life.spawn_count, id) << "seed " << seed;
-            EXPECT_EQ(properties.friction, static_cast<std::int32_t>(1 + id % kKinds));
             ASSERT_LT(life.body_kind, tables.dynamics.kinds.count());
-            const BodyProperties& kind = tables.dynamics.kinds[life.body_kind];
-            EXPECT_EQ(std::memcmp(&kind, &properties, sizeof kind), 0);
+            EXPECT_EQ(tables.dynamics.properties[row].friction,
+                      static_cast<std::int32_t>(1 + id % kKinds));
             ++row;
         }
         // As many as there are different bodies, in the lowest rows.

@@ -30,7 +30,6 @@ TEST(StateLayout, SectionsAreThoseThatTheirNumbersName) {
         {section::kContactImpulse, "contact_impulse"},
         {section::kJoint, "joint"},
         {section::kPlayer, "player"},
-        {section::kBodyProperties, "body_properties"},
         {section::kPair, "pair"},
     };
     ASSERT_EQ(World::schema().size(), std::size(names));
