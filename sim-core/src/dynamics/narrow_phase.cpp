@@ -579,7 +579,9 @@ StepFault NarrowPhase::run(const DynamicsTables& tables,
                 foreseen_.push_back(index);
             }
         }
-        if (pair != before) {
+        // What is foreseen is forgotten within the tick, and may look here as it did before.
+        const bool is_foreseen = is_touching(pair) && !touches;
+        if (pair != before || is_foreseen) {
             changed_.push_back(index);
         }
         if (touches != is_touching(before)) {
