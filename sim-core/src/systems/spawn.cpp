@@ -50,6 +50,20 @@ bool Spawner::destroy(BodyRow row) {
     return true;
 }
 
+void Spawner::forget() {
+    despawn_known_ = false;
+    kinds_.forget();
+    drop_queues();
+}
+
+void Spawner::drop_queues() {
+    created_.clear();
+    if (destroyed_count_ != 0) {
+        std::fill(destroyed_.begin(), destroyed_.end(), std::uint8_t{0});
+        destroyed_count_ = 0;
+    }
+}
+
 void Spawner::sort_created() {
     std::sort(created_.begin(), created_.end(), [](const BodyRecord& a, const BodyRecord& b) {
         return a.motion.id < b.motion.id;
@@ -161,9 +175,7 @@ StepFault Spawner::apply(const DynamicsTables& tables) {
         }
         take_kinds(tables);
     }
-    created_.clear();
-    std::fill_n(destroyed_.begin(), old_count, std::uint8_t{0});
-    destroyed_count_ = 0;
+    drop_queues();
     return fits ? StepFault::none : StepFault::bodies_full;
 }
 

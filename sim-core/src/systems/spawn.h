@@ -49,11 +49,9 @@ public:
     /// Whether bodies of the tables are due to go in this tick, see BodyLife::despawn_tick. Looks
     /// at all of them only where some came or went, or are due.
     bool is_despawn_due(const Table<BodyLife>& lives, std::uint32_t tick);
-    /// The tables are not those of before.
-    void forget() {
-        despawn_known_ = false;
-        kinds_.forget();
-    }
+    /// The tables are not those of before, nor is what was queued for them: a step that failed did
+    /// not come to apply it.
+    void forget();
 
     /// Of a world without kinds.
     void begin_kinds() { kinds_.begin(); }
@@ -73,6 +71,7 @@ public:
     StepFault apply(const DynamicsTables& tables);
 
 private:
+    void drop_queues();
     void number_rows(const Table<BodyMotion>& motion);
     void release_kinds(const DynamicsTables& tables);
     void take_kinds(const DynamicsTables& tables);

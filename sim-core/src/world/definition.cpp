@@ -67,6 +67,9 @@ Status check_settings(const WorldSettings& settings) {
             return Error{std::string("settings: ") + range.name + " must be " + range.allowed};
         }
     }
+    if (settings.bounds_policy > BoundsPolicy::error) {
+        return Error{"settings: bounds_policy is none that there is"};
+    }
     if (settings.body_capacity > kBodyCapacityMax || settings.pair_capacity > kPairCapacityMax ||
         settings.manifold_capacity > kPairCapacityMax ||
         settings.joint_capacity > kJointCapacityMax) {

@@ -85,6 +85,7 @@ TEST(WorldCreate, RefusalsNameWhatIsWrong) {
         {"linear_speed_max", [](auto& s) { s.settings.linear_speed_max = 0; }},
         {"angular_speed_max", [](auto& s) { s.settings.angular_speed_max = 1001; }},
         {"bounds must be", [](auto& s) { s.settings.bounds = 16001; }},
+        {"bounds_policy", [](auto& s) { s.settings.bounds_policy = static_cast<BoundsPolicy>(3); }},
         {"body_capacity of 3 is too small", [](auto& s) { s.settings.body_capacity = 3; }},
         {"body_capacity and joint_capacity must be at most",
          [](auto& s) { s.settings.body_capacity = 2000000; }},

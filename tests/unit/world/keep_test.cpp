@@ -129,6 +129,74 @@ TEST(Keep, GoesBackToEveryKeptStateBitForBit) {
     EXPECT_LT(fewest, world->body_count() / 2) << "pages must have stayed as they were";
 }
 
+/// Speculative bodies leave a contact and are foreseen to meet again within one look.
+TEST(Keep, GoesBackFromWhatWasOnlyForeseen) {
+    std::size_t begun = 0;
+    for (int speed = 4; speed < 60; speed += 5) {
+        WorldDefinition scene;
+        BodyDefinition wall = box(2, {0, 2, 0}, {0.2, 2, 4});
+        wall.mode = BodyMode::fixed;
+        scene.bodies = {ground(1), wall};
+        for (BodyId id = 10; id < 14; ++id) {
+            const Vec3 place{-3, 0.4, Real(static_cast<int>(id)) - Real(11.5)};
+            BodyDefinition body =
+                id % 2 == 1 ? box(id, place, {0.2, 0.2, 0.2}) : sphere(id, place, 0.2);
+            body.linear_velocity = {Real(speed), Real(static_cast<int>(id) - 10), 0};
+            body.restitution = 0.6;
+            body.collision_mode = CollisionMode::speculative;
+            scene.bodies.push_back(body);
+        }
+        const WorldPtr straight = make_world(scene);
+        const WorldPtr back = make_world(scene);
+        KeptState kept;
+        for (int tick = 0; tick < 90; ++tick) {
+            back->keep(kept);
+            step_idle(*back);
+            back->restore(kept);
+            step_idle(*back);
+            step_idle(*straight);
+            ASSERT_EQ(back->state_hash(), straight->state_hash()) << speed << ", tick " << tick;
+            ASSERT_EQ(back->contacts().size(), straight->contacts().size());
+            begun += straight->events().size();
+        }
+    }
+    EXPECT_GT(begun, 100U);
+}
+
+/// What a step that fails had marked to go does not go after the world went back.
+TEST(Keep, GoesBackFromAFault) {
+    WorldDefinition scene;
+    scene.settings.bounds = 20;
+    scene.settings.bounds_policy = BoundsPolicy::error;
+    scene.bodies = {ground(1), sphere(6, {5, 0.3, 5}, 0.3)};
+    add_pod(scene, 10, {0, 0.5, 0});
+    scene.pods[0].ball_lifetime_ticks = 20;
+    BodyDefinition far = sphere(5, {0, 10, 10}, 0.3);
+    far.linear_velocity = {30, 0, 0};
+    scene.bodies.push_back(far);
+    PlayerInput shoot;
+    shoot.buttons = PlayerInput::kShoot;
+    int fault = 1;
+    for (const WorldPtr world = make_world(scene); world->step(inputs_of({PlayerInput{}})).ok();) {
+        ++fault;
+    }
+    ASSERT_GT(fault, 22);
+    const WorldPtr world = make_world(scene);
+    KeptState kept;
+    for (int tick = 1; tick < fault; ++tick) {
+        if (tick == fault - 2) {
+            world->keep(kept);
+        }
+        ASSERT_TRUE(world->step(inputs_of({tick == fault - 20 ? shoot : PlayerInput{}})).ok());
+    }
+    ASSERT_FALSE(world->step(inputs_of({PlayerInput{}})).ok()); // the ball goes, too
+    world->restore(kept);
+    const std::uint32_t count = world->body_count();
+    ASSERT_TRUE(world->step(inputs_of({PlayerInput{}})).ok());
+    EXPECT_EQ(world->body_count(), count);
+    EXPECT_TRUE(world->body((BodyId{10} << 32U) + 1).has_value());
+}
+
 TEST(Keep, BytesWrittenByHandAreSeen) {
     const WorldPtr world = make_world(sleepy_scene());
     step_busy(*world);
