@@ -24,7 +24,7 @@ BodyKinds::BodyKinds(std::uint32_t body_capacity)
 
 std::uint32_t& BodyKinds::bucket_of(const BodyProperties& properties) {
     const std::uint64_t hash = hash_bytes(std::as_bytes(std::span(&properties, 1)));
-    return buckets_[hash & (buckets_.size() - 1)];
+    return buckets_[static_cast<std::size_t>(hash) & (buckets_.size() - 1)];
 }
 
 std::uint32_t BodyKinds::find(const Table<BodyProperties>& kinds,

@@ -84,6 +84,15 @@ std::int32_t twist_radius(std::int32_t radius,
         std::min<std::int64_t>(radius, kMost * body.gyration_radius / response));
 }
 
+/// Arms are at most as much longer than the body as the contact is deep.
+bool may_overreach(Overreach overreach, const BodyProperties& body, const Manifold& manifold) {
+    if (overreach != Overreach::deep) {
+        return overreach == Overreach::always;
+    }
+    const std::int64_t lowest = *std::min_element(manifold.separation, manifold.separation + 4);
+    return -8 * lowest > body.bounding_radius;
+}
+
 /// What a contact's lane is made from.
 struct PairReader {
     const StepConstants& constants;
@@ -132,8 +141,8 @@ void PairReader::read(ContactBlock& block, int lane, PairTerms& terms) const {
     terms.inverse_radius_min[lane] =
         twist == smaller.gyration_radius ? smaller.inverse_gyration_radius : inverse_radius(twist);
     terms.lever_max[lane] = saturate(std::int64_t{twist} * 15 / 2);
-    terms.slender_a[lane] = bodies.is_slender(row_a) ? 1 : 0;
-    terms.slender_b[lane] = bodies.is_slender(row_b) ? 1 : 0;
+    terms.overreach_a[lane] = may_overreach(bodies.overreach(row_a), a, manifold) ? 1 : 0;
+    terms.overreach_b[lane] = may_overreach(bodies.overreach(row_b), b, manifold) ? 1 : 0;
     const Softness& softness =
         a_moves && b_moves ? constants.dynamic_softness : constants.static_softness;
     block.mass_scale[lane] = softness.mass_scale;
@@ -166,8 +175,8 @@ void fill_padding(BodyRow padding_row, ContactBlock& block, PairTerms& terms) {
         }
         terms.inverse_radius_min[lane] = 0;
         terms.lever_max[lane] = 0;
-        terms.slender_a[lane] = 0;
-        terms.slender_b[lane] = 0;
+        terms.overreach_a[lane] = 0;
+        terms.overreach_b[lane] = 0;
         block.share_a[lane] = 0;
         block.share_b[lane] = 0;
         block.friction[lane] = 0;

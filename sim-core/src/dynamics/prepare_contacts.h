@@ -18,8 +18,8 @@ struct PairTerms {
     std::int32_t surface_velocity[3][kBlockLanes]; // Q11.20 m/s, world: B's less A's
     std::int32_t inverse_radius_min[kBlockLanes];  // Q7.24 1/m: of the smaller gyration radius
     std::int32_t lever_max[kBlockLanes];           // Q9.22 m: 7.5 of the smaller gyration radius
-    std::int32_t slender_a[kBlockLanes];           // 1 or 0, see is_slender()
-    std::int32_t slender_b[kBlockLanes];
+    std::int32_t overreach_a[kBlockLanes];         // 1 or 0, see Overreach
+    std::int32_t overreach_b[kBlockLanes];
 };
 
 /// Fills the rows of a block from its contacts' manifolds and bodies: normal rows, their couplings,
@@ -35,7 +35,7 @@ public:
         : terms_(terms), inputs_(inputs), block_(block), first_(first),
           points_(static_cast<std::uint32_t>(L::kWidth == 1 ? block.point_count[first]
                                                             : block.point_count_max)),
-          is_any_slender_(any(terms.slender_a) || any(terms.slender_b)) {}
+          does_any_overreach_(any(terms.overreach_a) || any(terms.overreach_b)) {}
 
     void run(std::int32_t substep_rate, std::int32_t separation_max) {
         load();
@@ -207,7 +207,7 @@ private:
     ContactBlock& block_;
     int first_;
     std::uint32_t points_;
-    bool is_any_slender_;
+    bool does_any_overreach_;
 
     Vector axes_[3][4]; // normal, first tangent, second tangent, Q2.30; xyz and what lies behind
     Vector delta_when_made_[4];
@@ -346,8 +346,8 @@ bool BlockPreparation<L>::is_known() {
     look(lane(block_.twist_lever_b));
     look(lane(terms_.inverse_radius_min));
     look(lane(terms_.lever_max));
-    look(lane(terms_.slender_a));
-    look(lane(terms_.slender_b));
+    look(lane(terms_.overreach_a));
+    look(lane(terms_.overreach_b));
     LOCKWIND_UNROLL
     for (const auto& surface : terms_.surface_velocity) {
         look(lane(surface));
@@ -422,7 +422,7 @@ void BlockPreparation<L>::hold_coupling(const ContactBlock::Row& other, Jacobian
     const Vector coupling =
         L::template round<kShift>(couple(jacobian, other, L::template start<kShift>()));
     const Vector size = L::maximum(coupling, L::negate(coupling));
-    const Vector slender = L::add(lane(terms_.slender_a), lane(terms_.slender_b));
+    const Vector slender = L::add(lane(terms_.overreach_a), lane(terms_.overreach_b));
     const Vector excess = L::select_positive(slender, L::subtract(size, L::set(kMost)), L::set(0));
     const Vector inverse = L::template reciprocal<kEffectiveMassFraction + kUnitFraction>(
         L::maximum(size, L::set(kMost)));
@@ -442,9 +442,9 @@ typename BlockPreparation<L>::Jacobian BlockPreparation<L>::jacobian_of(
     const Vector arm_a[3], const Vector arm_b[3], const Vector along[3]) const {
     Vector held_a[3] = {arm_a[0], arm_a[1], arm_a[2]};
     Vector held_b[3] = {arm_b[0], arm_b[1], arm_b[2]};
-    if (is_any_slender_) {
-        hold_arm(body_a_, lane(terms_.slender_a), along, held_a);
-        hold_arm(body_b_, lane(terms_.slender_b), along, held_b);
+    if (does_any_overreach_) {
+        hold_arm(body_a_, lane(terms_.overreach_a), along, held_a);
+        hold_arm(body_b_, lane(terms_.overreach_b), along, held_b);
     }
     Jacobian jacobian;
     lever_row(held_a, inverse_radius(body_a_), along, jacobian.a);
@@ -477,7 +477,7 @@ void BlockPreparation<L>::fill_row(const Jacobian& jacobian, ContactBlock::Row& 
 template <class L>
 void BlockPreparation<L>::make_normal_row(std::uint32_t point) {
     Jacobian jacobian = jacobian_of(arm_a_[point], arm_b_[point], axes_[0]);
-    for (std::uint32_t other = 0; is_any_slender_ && other < point; ++other) {
+    for (std::uint32_t other = 0; does_any_overreach_ && other < point; ++other) {
         hold_coupling(block_.point[other].row, jacobian);
     }
     fill_row(jacobian, block_.point[point].row);
@@ -548,7 +548,7 @@ void BlockPreparation<L>::make_tangent_row(int which) {
     Jacobian jacobian = jacobian_of(centre_a_, centre_b_, axes_[1 + which]);
     if (which == 1) {
         const ContactBlock::Row& first = block_.tangent_row[0];
-        if (is_any_slender_) {
+        if (does_any_overreach_) {
             hold_coupling(first, jacobian);
         }
         const Wide sum = couple(jacobian, first, L::template start<kCoefficientFraction>());

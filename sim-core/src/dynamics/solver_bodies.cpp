@@ -48,24 +48,32 @@ void read_terms(const BodyFrame& frame, const BodyProperties& body, BodyTerms& t
     }
 }
 
-/// An arm of 1.5 bounding radii may give it a row with a response of more than 7.75.
-bool may_overreach(const BodyProperties& body) {
+/// From what a row of an arm of 1.5 bounding radii has at most: a response of leverage x ratio, and
+/// 1 + leverage^2 x ratio between two rows. Both are to stay below 8, the former below 7.75. What a
+/// box, capsule or sphere has on its surface stays below 7: of those, only deep contacts count.
+Overreach overreach_of(const BodyProperties& body) {
     if (body.mode != kDynamic) {
-        return false;
+        return Overreach::never;
     }
     const std::int64_t ratio = *std::max_element(body.inverse_inertia, body.inverse_inertia + 3);
     const std::int64_t leverage = raw_saturate<std::int32_t>(round_shift(
         std::int64_t{body.bounding_radius} * body.inverse_gyration_radius, kLengthFraction));
     constexpr std::int64_t kMost = // 7.75 / 1.5
         (std::int64_t{31} << (kEffectiveMassFraction + kInertiaFraction)) / 6;
-    return leverage * ratio > kMost;
+    constexpr std::int64_t kOne = std::int64_t{1} << (16 + kInertiaFraction);
+    const std::int64_t square = (leverage * leverage) >> (2 * kEffectiveMassFraction - 16);
+    const bool is_any_form = body.shape >= static_cast<std::uint8_t>(ShapeType::hull);
+    if (leverage * ratio > kMost || (is_any_form && square * ratio > 5 * kOne)) {
+        return Overreach::always;
+    }
+    return square * ratio > 26 * kOne / 9 ? Overreach::deep : Overreach::never;
 }
 
 } // namespace
 
 SolverBodies::SolverBodies(std::uint32_t capacity)
     : padding_row_(capacity), bodies_(std::size_t{capacity} + 1), terms_(capacity), free_(capacity),
-      courses_(capacity), orientations_(capacity), speed_bound_(capacity), slender_(capacity) {
+      courses_(capacity), orientations_(capacity), speed_bound_(capacity), overreach_(capacity) {
     dynamic_rows_.reserve(capacity);
     kinematic_rows_.reserve(capacity);
 }
@@ -79,12 +87,12 @@ void SolverBodies::read(const StepConstants& constants,
     for (const BodyRow row : activity.rows()) {
         const BodyProperties& body = tables.properties[row];
         read_terms(frames[row], body, terms_[row]);
-        slender_[row] = may_overreach(body) ? 1 : 0;
+        overreach_[row] = overreach_of(body);
         read_body(constants, tables.motion[row], body, row);
     }
     for (const BodyRow row : activity.partners()) {
         read_terms(frames[row], tables.properties[row], terms_[row]);
-        slender_[row] = may_overreach(tables.properties[row]) ? 1 : 0;
+        overreach_[row] = overreach_of(tables.properties[row]);
         bodies_[row] = SolverBody{}; // at rest, and not to be moved
         speed_bound_[row] = 0;
     }

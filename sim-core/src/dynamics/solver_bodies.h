@@ -13,6 +13,10 @@
 
 namespace lockwind {
 
+/// Which arms of contacts may take a body's rows out of their formats: none, those an eighth longer
+/// than its bounding radius, as deep contacts have them, or any.
+enum class Overreach : std::uint8_t { never, deep, always };
+
 /// The bodies of a tick while its substeps run: read from the arena, moved, written back. All
 /// members are scratch of one tick.
 class SolverBodies {
@@ -63,8 +67,7 @@ public:
         return bodies_[row == kNoIndex ? padding_row_ : row];
     }
     const BodyTerms& terms(BodyRow row) const { return terms_[row]; }
-    /// Whether an arm half as long again as the body may leave the formats of a contact's rows.
-    bool is_slender(BodyRow row) const { return slender_[row] != 0; }
+    Overreach overreach(BodyRow row) const { return overreach_[row]; }
     /// Q11.20 m/s at the tick's start, of any point of the body.
     std::int32_t speed_bound(BodyRow row) const { return speed_bound_[row]; }
 
@@ -94,7 +97,7 @@ private:
     std::vector<Course> courses_;
     std::vector<const std::int32_t*> orientations_; // see set_orientation(); else null
     std::vector<std::int32_t> speed_bound_;
-    std::vector<std::uint8_t> slender_;
+    std::vector<Overreach> overreach_;
     std::vector<BodyRow> dynamic_rows_;
     std::vector<BodyRow> kinematic_rows_;
 };

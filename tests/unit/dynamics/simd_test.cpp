@@ -215,8 +215,8 @@ struct PairDraw {
             terms.body_b[lane] = &bodies[block.row_b[lane]];
             terms.inverse_radius_min[lane] = between(dice, 0, 100 << kEffectiveMassFraction);
             terms.lever_max[lane] = between(dice, 0, 100 << kLengthFraction);
-            terms.slender_a[lane] = between(dice, 0, 1);
-            terms.slender_b[lane] = between(dice, 0, 1);
+            terms.overreach_a[lane] = between(dice, 0, 1);
+            terms.overreach_b[lane] = between(dice, 0, 1);
         }
     }
 };
@@ -303,7 +303,7 @@ void change_an_input(PairDraw& pairs, ContactBlock& block, Dice& dice) {
                                     &one_of(pairs.terms.surface_velocity)[lane],
                                     &pairs.terms.inverse_radius_min[lane],
                                     &pairs.terms.lever_max[lane],
-                                    &pairs.terms.slender_b[lane],
+                                    &pairs.terms.overreach_b[lane],
                                     &block.twist_lever_a[lane],
                                     &block.twist_lever_b[lane],
                                     &share_a};
