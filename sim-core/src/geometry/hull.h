@@ -23,6 +23,8 @@ inline constexpr std::int32_t kHullTolerance = 512;
 struct HullVertex {
     std::int32_t place[3]; // Q9.22 m
     std::uint64_t faces;   // bit f: the vertex is a corner of face f
+
+    friend bool operator==(const HullVertex&, const HullVertex&) = default;
 };
 
 /// The hull lies below: normal . x <= offset, within an ulp.
@@ -31,11 +33,15 @@ struct HullFace {
     std::int32_t offset;        // Q9.22 m
     std::uint16_t first_corner; // counter-clockwise, seen from outside
     std::uint16_t corner_count;
+
+    friend bool operator==(const HullFace&, const HullFace&) = default;
 };
 
 struct HullCorner {
     std::uint8_t vertex;
     std::uint8_t edge; // from here to the face's next corner
+
+    friend bool operator==(const HullCorner&, const HullCorner&) = default;
 };
 
 struct HullEdge {
@@ -45,6 +51,8 @@ struct HullEdge {
     std::uint8_t
         left; // the face whose corners go from -> to; its normal x right's is the direction
     std::uint8_t right;
+
+    friend bool operator==(const HullEdge&, const HullEdge&) = default;
 };
 
 /// A convex polytope in the frame of its principal axes, about its centre of mass. Never changes
@@ -68,6 +76,8 @@ struct Hull {
     std::int32_t width_least;
     Volume volume;
     UnitInertia inertia; // principal moments / mass
+
+    friend bool operator==(const Hull&, const Hull&) = default;
 };
 
 /// The convex hull of `points`, whatever their order: the same for every permutation, and for

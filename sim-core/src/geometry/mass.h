@@ -21,6 +21,8 @@ using SquareMetres = Fixed<std::int64_t, 44>;
 /// (cylinder and two half spheres by the parallel-axis theorem).
 struct UnitInertia {
     SquareMetres moment[3];
+
+    friend bool operator==(const UnitInertia&, const UnitInertia&) = default;
 };
 UnitInertia unit_inertia(ShapeType type, const std::int32_t size[3]);
 
@@ -28,6 +30,8 @@ UnitInertia unit_inertia(ShapeType type, const std::int32_t size[3]);
 struct Volume {
     std::uint64_t mantissa;
     int fraction;
+
+    friend bool operator==(const Volume&, const Volume&) = default;
 };
 
 /// The leading 64 bits of value / 2^fraction.
