@@ -191,7 +191,7 @@ private:
     void make_axes();
     void fill_row(const Jacobian& jacobian, ContactBlock::Row& row);
     void hold_arm(const Vector body[kBodyTermCount],
-                  Vector slender,
+                  Vector overreach,
                   const Vector along[3],
                   Vector arm[3]) const;
     void hold_coupling(const ContactBlock::Row& other, Jacobian& jacobian) const;
@@ -370,13 +370,13 @@ void BlockPreparation<L>::make_axes() {
     }
 }
 
-/// Shortens a slender body's arm until |arm| / radius and |response| are at most 7.74, so that no
-/// sum of a row's products leaves the formats. It stays a row of such a body, J and M^-1 J^T of a
-/// shorter arm, which gives no energy. Bodies that lie deep in each other, or have turned since
-/// their manifold was made, have longer ones; others keep theirs to the bit.
+/// Shortens the arm of a body that may overreach until |arm| / radius and |response| are at most
+/// 7.74, so that no sum of a row's products leaves the formats. It stays a row of such a body, J
+/// and M^-1 J^T of a shorter arm, which gives no energy. Bodies that lie deep in each other, or
+/// have turned since their manifold was made, have longer ones; others keep theirs to the bit.
 template <class L>
 void BlockPreparation<L>::hold_arm(const Vector body[kBodyTermCount],
-                                   Vector slender,
+                                   Vector overreach,
                                    const Vector along[3],
                                    Vector arm[3]) const {
     constexpr int kProbe = 14;                                    // binary places
@@ -402,7 +402,7 @@ void BlockPreparation<L>::hold_arm(const Vector body[kBodyTermCount],
     const Vector square = L::maximum(dot<2 * kProbe - kSquare>(scaled, scaled),
                                      dot<2 * kProbe - kSquare>(response, response));
     const Vector excess = L::template multiply<kCoefficientFraction>(
-        L::select_positive(slender, square, L::set(0)), L::set(kInverseSquare));
+        L::select_positive(overreach, square, L::set(0)), L::set(kInverseSquare));
     const Vector ratio =
         L::root(L::add_product(L::zero(), excess, L::set(1 << (2 * kProbe - kSquare))));
     const Vector shorter =
@@ -413,8 +413,8 @@ void BlockPreparation<L>::hold_arm(const Vector body[kBodyTermCount],
     }
 }
 
-/// Shortens a slender body's arms until the row's coupling with another is at most 6.9, one more
-/// being a normal row's linear part.
+/// Shortens the arms of bodies that may overreach until the row's coupling with another is at most
+/// 6.9, one more being a normal row's linear part.
 template <class L>
 void BlockPreparation<L>::hold_coupling(const ContactBlock::Row& other, Jacobian& jacobian) const {
     constexpr int kShift = 2 * kCoefficientFraction - kEffectiveMassFraction;
@@ -422,8 +422,9 @@ void BlockPreparation<L>::hold_coupling(const ContactBlock::Row& other, Jacobian
     const Vector coupling =
         L::template round<kShift>(couple(jacobian, other, L::template start<kShift>()));
     const Vector size = L::maximum(coupling, L::negate(coupling));
-    const Vector slender = L::add(lane(terms_.overreach_a), lane(terms_.overreach_b));
-    const Vector excess = L::select_positive(slender, L::subtract(size, L::set(kMost)), L::set(0));
+    const Vector overreach = L::add(lane(terms_.overreach_a), lane(terms_.overreach_b));
+    const Vector excess =
+        L::select_positive(overreach, L::subtract(size, L::set(kMost)), L::set(0));
     const Vector inverse = L::template reciprocal<kEffectiveMassFraction + kUnitFraction>(
         L::maximum(size, L::set(kMost)));
     const Vector shorter =

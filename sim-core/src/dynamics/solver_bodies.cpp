@@ -62,8 +62,8 @@ Overreach overreach_of(const BodyProperties& body) {
         (std::int64_t{31} << (kEffectiveMassFraction + kInertiaFraction)) / 6;
     constexpr std::int64_t kOne = std::int64_t{1} << (16 + kInertiaFraction);
     const std::int64_t square = (leverage * leverage) >> (2 * kEffectiveMassFraction - 16);
-    const bool is_any_form = body.shape >= static_cast<std::uint8_t>(ShapeType::hull);
-    if (leverage * ratio > kMost || (is_any_form && square * ratio > 5 * kOne)) {
+    const bool is_free_form = body.shape >= static_cast<std::uint8_t>(ShapeType::hull);
+    if (leverage * ratio > kMost || (is_free_form && square * ratio > 5 * kOne)) {
         return Overreach::always;
     }
     return square * ratio > 26 * kOne / 9 ? Overreach::deep : Overreach::never;

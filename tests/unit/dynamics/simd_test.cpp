@@ -163,12 +163,23 @@ TEST_P(SimdTest, PassesOfRandomBlocksAreThoseOfScalarLanes) {
     auto block = std::make_unique<ContactBlock>();
     auto other = std::make_unique<ContactBlock>();
     int cones = 0;
+    int approaching = 0;
     for (int trial = 0; trial < 4000; ++trial) {
         draw_block(*block, dice);
         *other = *block;
         Bodies bodies{};
         draw_bodies(bodies, dice);
         Bodies others = bodies;
+        PointSpeeds speeds;
+        PointSpeeds other_speeds;
+        scalar.read_speeds(*block, bodies.data(), speeds);
+        wide.read_speeds(*other, others.data(), other_speeds);
+        for (int lane = 0; lane < block->lane_count; ++lane) {
+            for (int point = 0; point < block->point_count[lane]; ++point) {
+                ASSERT_EQ(speeds.at[point][lane], other_speeds.at[point][lane]) << trial;
+                approaching += speeds.at[point][lane] < -kVelocityOne ? 1 : 0;
+            }
+        }
         const auto friction = block->friction_impulse[0][0];
         for (const auto pass :
              {&ContactKernels::warm_start, &ContactKernels::solve, &ContactKernels::relax}) {
@@ -180,6 +191,7 @@ TEST_P(SimdTest, PassesOfRandomBlocksAreThoseOfScalarLanes) {
         cones += block->friction_impulse[0][0] != friction ? 1 : 0;
     }
     EXPECT_GT(cones, 1000);
+    EXPECT_GT(approaching, 1000);
 }
 
 /// A manifold and bodies as bodies of any shape and place might bring them.
