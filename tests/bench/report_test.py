@@ -65,6 +65,17 @@ class Figures(unittest.TestCase):
             with self.assertRaises(measure.BenchError):
                 results.state_hash(again, "a", ["lockwind", "lockwind_avx2"])
 
+    def test_snapshots_are_told_by_what_they_cannot_beat(self):
+        times = {"save/a": 30, "load/a": 90, "keep/a": 12, "restore/a": 8, "memcpy/a": 10, "hash/a": 3,
+                 "xxh3/a": 2}
+        told = results.snapshots(results.Runs([
+            {name: {"time_unit": "us", "real_time": 0, "cpu_time": us, "bodies": 5, "snapshot_bytes": 1000}
+             for name, us in times.items()}]))["a"]
+        self.assertAlmostEqual(told["keep_over_memcpy"], 1.2)
+        self.assertAlmostEqual(told["restore_over_memcpy"], 0.8)
+        self.assertAlmostEqual(told["hash_over_xxh3"], 1.5)
+        self.assertEqual(told["bytes_per_body"], 200)
+
     def test_growth_is_time_a_body(self):
         times = {"growth/separate_10": 10, "growth/separate_100": 200, "growth/resting_awake_100": 50,
                  "growth/resting_asleep_100": 2}

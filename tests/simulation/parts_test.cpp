@@ -45,10 +45,7 @@ void add_heap(WorldDefinition& scene, std::uint32_t count, double size, double l
         body.shape.radius = unit * Real(0.8);
         body.shape.half_height = unit * Real(0.6);
         body.shape.half_extents = {unit, unit * Real(0.7), unit * Real(0.8)};
-        body.orientation = {random_symmetric(3, index, 0),
-                            random_symmetric(3, index, 1),
-                            random_symmetric(3, index, 2),
-                            random_symmetric(3, index, 3)};
+        body.orientation = random_orientation(3, index);
         body.linear_velocity = vec(0, -speed, 0);
         scene.bodies.push_back(body);
     }
@@ -232,10 +229,7 @@ TEST(CompoundBody, AnglePiecesPileUp) {
             body_of(2 + index,
                     ShapeType::compound,
                     vec((index % 2) * 1.2 - 0.6, 1 + index / 4 * 1.3, (index / 2 % 2) * 1.2 - 0.6));
-        body.orientation = {random_symmetric(5, index, 0),
-                            random_symmetric(5, index, 1),
-                            random_symmetric(5, index, 2),
-                            random_symmetric(5, index, 3)};
+        body.orientation = random_orientation(5, index);
         scene.bodies.push_back(body);
     }
     const WorldPtr world = make_world(scene);
@@ -272,10 +266,7 @@ TEST(CompoundBody, HubsWithLongBarsGainNoEnergy) {
                 body_of(2 + index,
                         ShapeType::compound,
                         vec((index % 3) * 0.9 - 0.9, 1 + index * 0.7, (index / 3 % 2) * 0.8 - 0.4));
-            body.orientation = {random_symmetric(6, index, 0),
-                                random_symmetric(6, index, 1),
-                                random_symmetric(6, index, 2),
-                                random_symmetric(6, index, 3)};
+            body.orientation = random_orientation(6, index);
             scene.bodies.push_back(body);
         }
         const WorldPtr world = make_world(scene);

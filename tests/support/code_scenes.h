@@ -10,6 +10,14 @@
 // Scenes and inputs built in code, for tests that need a world but no scene file.
 namespace lockwind::test {
 
+/// Drawn for the `index`th body; a definition need not be a unit.
+inline RealQuat random_orientation(std::uint64_t seed, std::uint64_t index) {
+    return {random_symmetric(seed, index, 0),
+            random_symmetric(seed, index, 1),
+            random_symmetric(seed, index, 2),
+            random_symmetric(seed, index, 3)};
+}
+
 /// A plane that holds everything with y >= 0 up.
 inline BodyDefinition ground(BodyId id) {
     BodyDefinition body;

@@ -166,10 +166,7 @@ TEST(HullBody, HeapOfTetrahedraSettles) {
                                     Real(index / 16) * Real(1.4) + Real(1),
                                     Real(index / 4 % 4) * Real(1.4) - Real(2.1)},
                                    0);
-        body.orientation = {random_symmetric(7, index, 0),
-                            random_symmetric(7, index, 1),
-                            random_symmetric(7, index, 2),
-                            random_symmetric(7, index, 3)};
+        body.orientation = random_orientation(7, index);
         scene.bodies.push_back(body);
     }
     const WorldPtr world = make_world(scene);

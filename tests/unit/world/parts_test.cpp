@@ -38,10 +38,7 @@ WorldDefinition part_scene(ShapeType ground_type) {
         body.shape.hull = 0;
         body.shape.compound = index % 3;
         body.shape.radius = 0.4;
-        body.orientation = {random_symmetric(9, index, 0),
-                            random_symmetric(9, index, 1),
-                            random_symmetric(9, index, 2),
-                            random_symmetric(9, index, 3)};
+        body.orientation = random_orientation(9, index);
         scene.bodies.push_back(body);
     }
     return scene;
