@@ -73,8 +73,7 @@ bool is_woken_by(BodyRow row,
                  BodyRow other,
                  const DynamicsTables& tables,
                  const Activity& activity) {
-    return is_member(tables, row) && !activity.is_awake(row) && activity.is_awake(other) &&
-           tables.properties[other].mode != kFixed;
+    return is_member(tables, row) && !activity.is_awake(row) && activity.is_awake(other);
 }
 
 } // namespace

@@ -158,6 +158,28 @@ TEST(Sleep, WhatStoodOnABodyThatGoesFalls) {
     EXPECT_NEAR(to_double(world->body(4)->position.y), 1.5, 0.05);
 }
 
+TEST(Sleep, AFixedBodyThatComesWakesWhatItTouchesAlone) {
+    WorldDefinition scene = stack_scene(2);
+    add_stack(scene, 10, 1, 5);
+    BodyDefinition wall = box(20, {0, 1, 30}, {0.5, 1, 0.5});
+    wall.mode = BodyMode::fixed;
+    scene.bodies.push_back(wall);
+    const WorldPtr world = make_world(scene);
+    const auto comes = [&](BodyDefinition body, const Vec3& place, bool is_new) {
+        ASSERT_GT(ticks_till_asleep(*world, 300), 0);
+        body.position = place;
+        ASSERT_TRUE((is_new ? world->create_body(body) : world->redefine_body(body)).ok());
+        step_idle(*world);
+        EXPECT_EQ(count(*world, EventType::woke), 2U); // the stack, and not the box beside it
+        step_idle(*world, 120);
+        EXPECT_GT(std::abs(to_double(world->body(2)->position.x)), 0.1);
+    };
+    comes(wall, {-0.8, 1, 0}, false);
+    BodyDefinition step = wall;
+    step.id = 21;
+    comes(step, world->body(2)->position + Vec3{0.8, 0.5, 0}, true);
+}
+
 TEST(Sleep, AMovingPlatformKeepsItsLoadAwake) {
     WorldDefinition scene;
     BodyDefinition platform = box(1, {0, 0, 0}, {5, 0.5, 5});
