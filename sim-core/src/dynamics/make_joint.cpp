@@ -159,18 +159,29 @@ void fill_anchor(const Vec3& anchor, std::int32_t out[3]) {
     out[2] = convert<Length>(anchor.z).raw();
 }
 
+/// Those that the kind has, as check_limits has checked them.
+void fill_limits(const JointDefinition& definition, Joint& joint) {
+    if (!definition.has_limit) {
+        return;
+    }
+    if (limits_length(definition.kind)) {
+        joint.length_limit[0] = convert<Length>(definition.length_min).raw();
+        joint.length_limit[1] = convert<Length>(definition.length_max).raw();
+        return;
+    }
+    joint.angle_limit[0] = convert<Coefficient>(definition.angle_min).raw();
+    joint.angle_limit[1] = convert<Coefficient>(definition.angle_max).raw();
+    if (definition.kind == JointKind::cone_twist) {
+        joint.swing_limit = convert<Coefficient>(definition.swing_max).raw();
+    }
+}
+
 void fill_drives(const JointDefinition& definition, Joint& joint) {
     joint.has_limit = definition.has_limit ? 1 : 0;
     joint.has_motor = definition.has_motor ? 1 : 0;
     joint.has_spring = definition.has_spring || definition.kind == JointKind::grab ? 1 : 0;
     joint.collide_connected = definition.collide_connected ? 1 : 0;
-    if (definition.has_limit) {
-        joint.length_limit[0] = convert<Length>(definition.length_min).raw();
-        joint.length_limit[1] = convert<Length>(definition.length_max).raw();
-        joint.angle_limit[0] = convert<Coefficient>(definition.angle_min).raw();
-        joint.angle_limit[1] = convert<Coefficient>(definition.angle_max).raw();
-        joint.swing_limit = convert<Coefficient>(definition.swing_max).raw();
-    }
+    fill_limits(definition, joint);
     joint.motor_speed = convert<Velocity>(definition.motor_speed).raw();
     joint.motor_limit = definition.motor_max.raw();
     joint.spring_hertz = convert<SpringHertz>(definition.spring_hertz).raw();

@@ -49,6 +49,35 @@ TEST(WorldJoint, RefusalsNameTheJointAndTheField) {
     EXPECT_NE(refusal(small).find("joint_capacity of 3"), std::string::npos) << refusal(small);
 }
 
+/// Limits that a kind does not have are not looked at, nor kept.
+TEST(WorldJoint, LimitsOfOtherKindsAreLeftOut) {
+    const auto spoil = [](JointDefinition& joint) {
+        const bool is_length = joint.kind == JointKind::distance ||
+                               joint.kind == JointKind::slider || joint.kind == JointKind::wheel;
+        const Real extremes[] = {Real::highest(), Real::lowest()};
+        if (is_length) {
+            joint.angle_min = extremes[0];
+            joint.angle_max = extremes[1];
+            joint.swing_max = extremes[1];
+        } else {
+            joint.length_min = extremes[0];
+            joint.length_max = extremes[1];
+            joint.swing_max = joint.kind == JointKind::hinge ? extremes[0] : joint.swing_max;
+        }
+    };
+    WorldDefinition spoilt = gallery();
+    int limits = 0;
+    for (JointDefinition& joint : spoilt.joints) {
+        limits += joint.has_limit ? 1 : 0;
+        spoil(joint);
+    }
+    EXPECT_GE(limits, 3);
+    const WorldPtr world = make_world(spoilt);
+    const WorldPtr usual = make_world(gallery());
+    EXPECT_TRUE(world->check().ok()) << world->check().error().message;
+    EXPECT_EQ(world->state_hash(), usual->state_hash());
+}
+
 TEST(WorldJoint, OrderOfTheDefinitionDoesNotMatter) {
     WorldDefinition reversed = gallery();
     std::reverse(reversed.joints.begin(), reversed.joints.end());
