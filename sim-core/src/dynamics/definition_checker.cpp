@@ -29,6 +29,17 @@ void DefinitionChecker::range(
     }
 }
 
+void DefinitionChecker::count(const char* field,
+                              std::uint32_t value,
+                              std::uint32_t low,
+                              std::uint32_t high) {
+    if (value < low || value > high) {
+        fail(field,
+             "is " + std::to_string(value) + "; it must be within " + std::to_string(low) + " .. " +
+                 std::to_string(high));
+    }
+}
+
 void DefinitionChecker::vector_range(const char* field,
                                      const Vec3& value,
                                      Real limit,

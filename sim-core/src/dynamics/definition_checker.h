@@ -30,6 +30,7 @@ public:
         }
     }
     void range(const char* field, Real value, Real low, Real high, const char* unit);
+    void count(const char* field, std::uint32_t value, std::uint32_t low, std::uint32_t high);
     /// Each component within +-limit.
     void vector_range(const char* field, const Vec3& value, Real limit, const char* unit);
     /// The vector's length as well.

@@ -1,5 +1,6 @@
 #include "systems/pod.h"
 
+#include "dynamics/definition_checker.h"
 #include "dynamics/make_body.h"
 #include "dynamics/pairing.h"
 #include "systems/motion.h"
@@ -25,34 +26,22 @@ constexpr Real kBallRestitution = 0.5;
 
 constexpr Real kOne = 1;
 
-struct Limit {
-    const char* name;
-    Real value;
-    std::int64_t low;
-    std::int64_t high;
-    const char* unit;
-};
-
 Error pod_error(Slot slot, const std::string& what) {
     return Error{"pod of slot " + std::to_string(slot) + ": " + what};
 }
 
 Status check_pod(const PodDefinition& pod, Slot slot) {
-    const Limit limits[] = {
-        {"thrust_acceleration", pod.thrust_acceleration, 0, 1000, "m/s^2"},
-        {"speed_max", pod.speed_max, 1, 400, "m/s"},
-        {"turn_rate", pod.turn_rate, 0, 50, "rad/s"},
-        {"jump_speed", pod.jump_speed, 0, 100, "m/s"},
-        {"ball_speed", pod.ball_speed, 0, 1000, "m/s"},
-        {"ball_cooldown_ticks", pod.ball_cooldown_ticks, 1, 1'000'000, "ticks"},
-        {"ball_lifetime_ticks", pod.ball_lifetime_ticks, 1, 1'000'000, "ticks"},
-    };
-    for (const Limit& limit : limits) {
-        if (limit.value < Real(limit.low) || limit.value > Real(limit.high)) {
-            return pod_error(slot,
-                             std::string(limit.name) + " must be " + std::to_string(limit.low) +
-                                 " .. " + std::to_string(limit.high) + " " + limit.unit);
-        }
+    constexpr std::uint32_t kTicksMax = 1'000'000;
+    DefinitionChecker checker("pod of slot", slot);
+    checker.range("thrust_acceleration", pod.thrust_acceleration, 0, 1000, " m/s^2");
+    checker.range("speed_max", pod.speed_max, 1, 400, " m/s");
+    checker.range("turn_rate", pod.turn_rate, 0, 50, " rad/s");
+    checker.range("jump_speed", pod.jump_speed, 0, 100, " m/s");
+    checker.range("ball_speed", pod.ball_speed, 0, 1000, " m/s");
+    checker.count("ball_cooldown_ticks", pod.ball_cooldown_ticks, 1, kTicksMax);
+    checker.count("ball_lifetime_ticks", pod.ball_lifetime_ticks, 1, kTicksMax);
+    if (checker.failed()) {
+        return checker.error();
     }
     return Success{};
 }

@@ -1,5 +1,6 @@
 #include "world/definition.h"
 
+#include "dynamics/definition_checker.h"
 #include "dynamics/step_constants.h"
 
 #include <algorithm>
@@ -18,57 +19,32 @@ constexpr Real kSleepSpeedMax = 10.0;
 constexpr Real kSleepSecondsMax = 60.0;
 constexpr Real kDetailDistanceMax = 16000.0;
 
-struct Range {
-    const char* name;
-    Real value;
-    Real low;
-    Real high;
-    const char* allowed;
-};
-
 bool outside(const Vec3& position, Real bounds) {
     return abs(position.x) > bounds || abs(position.y) > bounds || abs(position.z) > bounds;
 }
 
 Status check_settings(const WorldSettings& settings) {
-    const Range ranges[] = {
-        {"tick_rate_hz",
-         settings.tick_rate_hz,
-         kWorldTickRateHzMin,
-         kWorldTickRateHzMax,
-         "10 .. 240"},
-        {"substeps", settings.substeps, 1, kSubstepsMax, "1 .. 16"},
-        {"gravity.x", settings.gravity.x, -kGravityMax, kGravityMax, "-1000 .. 1000 m/s^2"},
-        {"gravity.y", settings.gravity.y, -kGravityMax, kGravityMax, "-1000 .. 1000 m/s^2"},
-        {"gravity.z", settings.gravity.z, -kGravityMax, kGravityMax, "-1000 .. 1000 m/s^2"},
-        {"linear_speed_max", settings.linear_speed_max, 1, kLinearSpeedLimit, "1 .. 1000 m/s"},
-        {"angular_speed_max", settings.angular_speed_max, 1, kAngularSpeedLimit, "1 .. 1000 rad/s"},
-        {"sleep_speed", settings.sleep_speed, 0, kSleepSpeedMax, "0 .. 10 m/s"},
-        {"sleep_seconds", settings.sleep_seconds, 0, kSleepSecondsMax, "0 .. 60 s"},
-        {"bounds", settings.bounds, 1, kBoundsMax, "1 .. 16000 m"},
-        {"level_of_detail.full_within",
-         settings.level_of_detail.full_within,
-         1,
-         kDetailDistanceMax,
-         "1 .. 16000 m"},
-        {"level_of_detail.simplified_within",
-         settings.level_of_detail.simplified_within,
-         settings.level_of_detail.full_within,
-         kDetailDistanceMax,
-         "level_of_detail.full_within .. 16000 m"},
-        {"level_of_detail.simplified_substeps",
-         settings.level_of_detail.simplified_substeps,
-         1,
-         kSubstepsMax,
-         "1 .. 16"},
-    };
-    for (const Range& range : ranges) {
-        if (range.value < range.low || range.value > range.high) {
-            return Error{std::string("settings: ") + range.name + " must be " + range.allowed};
-        }
-    }
-    if (settings.bounds_policy > BoundsPolicy::error) {
-        return Error{"settings: bounds_policy is none that there is"};
+    const LevelOfDetail& detail = settings.level_of_detail;
+    DefinitionChecker checker("settings");
+    checker.count("tick_rate_hz", settings.tick_rate_hz, kWorldTickRateHzMin, kWorldTickRateHzMax);
+    checker.count("substeps", settings.substeps, 1, kSubstepsMax);
+    checker.vector_range("gravity", settings.gravity, kGravityMax, " m/s^2");
+    checker.range("linear_speed_max", settings.linear_speed_max, 1, kLinearSpeedLimit, " m/s");
+    checker.range("angular_speed_max", settings.angular_speed_max, 1, kAngularSpeedLimit, " rad/s");
+    checker.range("sleep_speed", settings.sleep_speed, 0, kSleepSpeedMax, " m/s");
+    checker.range("sleep_seconds", settings.sleep_seconds, 0, kSleepSecondsMax, " s");
+    checker.range("bounds", settings.bounds, 1, kBoundsMax, " m");
+    checker.require(settings.bounds_policy <= BoundsPolicy::error, "bounds_policy", "is unknown");
+    checker.range("level_of_detail.full_within", detail.full_within, 1, kDetailDistanceMax, " m");
+    checker.range("level_of_detail.simplified_within",
+                  detail.simplified_within,
+                  detail.full_within,
+                  kDetailDistanceMax,
+                  " m");
+    checker.count(
+        "level_of_detail.simplified_substeps", detail.simplified_substeps, 1, kSubstepsMax);
+    if (checker.failed()) {
+        return checker.error();
     }
     if (settings.body_capacity > kBodyCapacityMax || settings.pair_capacity > kPairCapacityMax ||
         settings.manifold_capacity > kPairCapacityMax ||

@@ -77,14 +77,20 @@ struct Case {
 };
 
 TEST(WorldCreate, RefusalsNameWhatIsWrong) {
+    constexpr std::uint32_t kHalf = 1U << 31U; // and a number that is allowed: what no Real holds
     const Case cases[] = {
-        {"tick_rate_hz must be 10 .. 240", [](auto& s) { s.settings.tick_rate_hz = 9; }},
+        {"tick_rate_hz is 9; it must be within 10 .. 240",
+         [](auto& s) { s.settings.tick_rate_hz = 9; }},
         {"tick_rate_hz", [](auto& s) { s.settings.tick_rate_hz = 241; }},
-        {"substeps must be 1 .. 16", [](auto& s) { s.settings.substeps = 0; }},
+        {"tick_rate_hz is 2147483708", [](auto& s) { s.settings.tick_rate_hz = kHalf + 60; }},
+        {"substeps is 0; it must be within 1 .. 16", [](auto& s) { s.settings.substeps = 0; }},
+        {"substeps is 2147483652", [](auto& s) { s.settings.substeps = kHalf + 4; }},
+        {"simplified_substeps is 2147483650",
+         [](auto& s) { s.settings.level_of_detail.simplified_substeps = kHalf + 2; }},
         {"gravity.y", [](auto& s) { s.settings.gravity.y = -1001; }},
         {"linear_speed_max", [](auto& s) { s.settings.linear_speed_max = 0; }},
         {"angular_speed_max", [](auto& s) { s.settings.angular_speed_max = 1001; }},
-        {"bounds must be", [](auto& s) { s.settings.bounds = 16001; }},
+        {"bounds is 16001.0; it must be", [](auto& s) { s.settings.bounds = 16001; }},
         {"bounds_policy", [](auto& s) { s.settings.bounds_policy = static_cast<BoundsPolicy>(3); }},
         {"body_capacity of 3 is too small", [](auto& s) { s.settings.body_capacity = 3; }},
         {"body_capacity and joint_capacity must be at most",
@@ -96,13 +102,16 @@ TEST(WorldCreate, RefusalsNameWhatIsWrong) {
         {"pod of slot 0: body 9 is no dynamic body", [](auto& s) { s.pods[0].body = 9; }},
         {"pod of slot 0: body 1 is no dynamic body", [](auto& s) { s.pods[0].body = 1; }},
         {"pod of slot 1: body 10 is also the pod of slot 0", [](auto& s) { s.pods[1].body = 10; }},
-        {"pod of slot 1: speed_max must be 1 .. 400 m/s", [](auto& s) { s.pods[1].speed_max = 0; }},
+        {"pod of slot 1: speed_max is 0.0; it must be within 1.0 .. 400.0 m/s",
+         [](auto& s) { s.pods[1].speed_max = 0; }},
         {"thrust_acceleration", [](auto& s) { s.pods[1].thrust_acceleration = -1; }},
         {"turn_rate", [](auto& s) { s.pods[1].turn_rate = 51; }},
         {"jump_speed", [](auto& s) { s.pods[1].jump_speed = 101; }},
         {"ball_speed", [](auto& s) { s.pods[1].ball_speed = 1001; }},
         {"ball_cooldown_ticks", [](auto& s) { s.pods[1].ball_cooldown_ticks = 0; }},
         {"ball_lifetime_ticks", [](auto& s) { s.pods[1].ball_lifetime_ticks = 0; }},
+        {"ball_cooldown_ticks", [](auto& s) { s.pods[1].ball_cooldown_ticks = kHalf + 15; }},
+        {"ball_lifetime_ticks", [](auto& s) { s.pods[1].ball_lifetime_ticks = kHalf + 600; }},
         {"pod of slot 1: ball", [](auto& s) { s.pods[1].ball_radius = 0; }},
         {"at most 256 can play", [](auto& s) { s.pods.resize(257); }},
     };
