@@ -1,6 +1,7 @@
 #pragma once
 
 #include "dynamics/lanes.h"
+#include "dynamics/solver_format.h"
 
 #include "lockwind/types.h"
 
@@ -10,10 +11,14 @@ namespace lockwind {
 
 inline constexpr std::uint32_t kBlockPoints = 4;
 
+/// Where a row of four that holds a vector has room for whether its body is wild.
+inline constexpr int kWildEntry = 3;
+inline constexpr std::int32_t kCalmMax = 128 * kVelocityOne;
+
 /// A body's velocities while the substeps run, Q11.20 m/s; angular ones times the gyration radius.
 /// Rows of four, so that a body is one vector register.
 struct alignas(64) SolverBody {
-    std::int32_t linear[4];
+    std::int32_t linear[4]; // and at kWildEntry 1 of a wild body, 0 of any other
     std::int32_t angular[4];
     std::int32_t linear_moved[4]; // velocities of the last position step
     std::int32_t angular_moved[4];

@@ -13,6 +13,11 @@ namespace lockwind {
 /// The solver's inner loops for one kind of lanes; every kind gives the same bits.
 struct ContactKernels {
     using Pass = void (*)(std::span<ContactBlock> blocks, SolverBody* bodies);
+    struct Passes {
+        Pass warm_start;
+        Pass solve;
+        Pass relax;
+    };
 
     void (*prepare)(const PairTerms& terms,
                     std::int32_t substep_rate,
@@ -20,50 +25,62 @@ struct ContactKernels {
                     RowInputs& inputs,
                     ContactBlock& block);
     void (*read_speeds)(ContactBlock& block, SolverBody* bodies, PointSpeeds& out);
-    Pass warm_start;
-    Pass solve;
-    Pass relax;
+    Passes calm; // where no body is wild
+    Passes wild; // the same for all contacts that have no wild body
 };
 
 /// Calls visit(solver) for the lanes from `first`, with the solver of their number of points.
-template <class L, class Visit>
+template <class L, bool kHolds, class Visit>
 void visit_lanes(ContactBlock& block, SolverBody* bodies, int first, Visit&& visit) {
     switch (L::kWidth == 1 ? block.point_count[first] : block.point_count_max) {
     case 1: {
-        BlockSolver<L, 1> solver(block, bodies, first);
+        BlockSolver<L, 1, kHolds> solver(block, bodies, first);
         visit(solver);
         break;
     }
     case 2: {
-        BlockSolver<L, 2> solver(block, bodies, first);
+        BlockSolver<L, 2, kHolds> solver(block, bodies, first);
         visit(solver);
         break;
     }
     case 3: {
-        BlockSolver<L, 3> solver(block, bodies, first);
+        BlockSolver<L, 3, kHolds> solver(block, bodies, first);
         visit(solver);
         break;
     }
     default: {
-        BlockSolver<L, 4> solver(block, bodies, first);
+        BlockSolver<L, 4, kHolds> solver(block, bodies, first);
         visit(solver);
         break;
     }
     }
 }
 
-template <class L, class Visit>
+template <class L, bool kHolds, class Visit>
 void visit_block(ContactBlock& block, SolverBody* bodies, Visit&& visit) {
     for (int first = 0; first < block.lane_count; first += L::kWidth) {
-        visit_lanes<L>(block, bodies, first, visit);
+        visit_lanes<L, kHolds>(block, bodies, first, visit);
     }
 }
 
-template <class L, class Visit>
-void visit_blocks(std::span<ContactBlock> blocks, SolverBody* bodies, Visit&& visit) {
-    for (ContactBlock& block : blocks) {
-        visit_block<L>(block, bodies, visit);
-    }
+template <class L, bool kHolds>
+ContactKernels::Passes passes_of() {
+    return {[](std::span<ContactBlock> blocks, SolverBody* bodies) {
+                for (ContactBlock& block : blocks) {
+                    visit_block<L, kHolds>(
+                        block, bodies, [](auto& solver) { solver.warm_start(); });
+                }
+            },
+            [](std::span<ContactBlock> blocks, SolverBody* bodies) {
+                for (ContactBlock& block : blocks) {
+                    visit_block<L, kHolds>(block, bodies, [](auto& solver) { solver.solve(); });
+                }
+            },
+            [](std::span<ContactBlock> blocks, SolverBody* bodies) {
+                for (ContactBlock& block : blocks) {
+                    visit_block<L, kHolds>(block, bodies, [](auto& solver) { solver.relax(); });
+                }
+            }};
 }
 
 template <class L>
@@ -79,17 +96,10 @@ ContactKernels kernels_of() {
             }
         },
         [](ContactBlock& block, SolverBody* bodies, PointSpeeds& out) {
-            visit_block<L>(block, bodies, [&](auto& solver) { solver.read_speeds(out); });
+            visit_block<L, false>(block, bodies, [&](auto& solver) { solver.read_speeds(out); });
         },
-        [](std::span<ContactBlock> blocks, SolverBody* bodies) {
-            visit_blocks<L>(blocks, bodies, [](auto& solver) { solver.warm_start(); });
-        },
-        [](std::span<ContactBlock> blocks, SolverBody* bodies) {
-            visit_blocks<L>(blocks, bodies, [](auto& solver) { solver.solve(); });
-        },
-        [](std::span<ContactBlock> blocks, SolverBody* bodies) {
-            visit_blocks<L>(blocks, bodies, [](auto& solver) { solver.relax(); });
-        }};
+        passes_of<L, false>(),
+        passes_of<L, true>()};
 }
 
 } // namespace lockwind

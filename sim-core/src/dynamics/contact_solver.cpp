@@ -98,7 +98,7 @@ struct PairReader {
     const StepConstants& constants;
     const DynamicsTables& tables;
     const BodyFrames& frames;
-    const SolverBodies& bodies;
+    SolverBodies& bodies;
 
     void read(ContactBlock& block, int lane, PairTerms& terms) const;
 };
@@ -149,13 +149,18 @@ void PairReader::read(ContactBlock& block, int lane, PairTerms& terms) const {
     block.impulse_scale[lane] = softness.impulse_scale;
     block.bias_rate[lane] = softness.bias_rate;
     block.impulse_max[lane] = kImpulseMax / block.point_count[lane];
+    std::int64_t load = 0;
     for (int point = 0; point < block.point_count_max; ++point) {
         const bool exists = point < block.point_count[lane];
         block.point[point].impulse[lane] = exists ? impulse.normal[point] : 0;
+        load += block.point[point].impulse[lane];
     }
     block.friction_impulse[0][lane] = impulse.friction[0];
     block.friction_impulse[1][lane] = impulse.friction[1];
     block.twist_impulse[lane] = impulse.twist;
+    if (load > kCalmMax) {
+        bodies.mark_wild(a_moves ? row_a : row_b);
+    }
 }
 
 /// Lanes without a contact are a contact of nothing with nothing.
@@ -272,14 +277,15 @@ void ContactSolver::note_impacts() {
     }
 }
 
-void ContactSolver::run(ContactKernels::Pass ContactKernels::*pass, SolverBodies& bodies) {
+void ContactSolver::run(ContactKernels::Pass ContactKernels::Passes::*pass, SolverBodies& bodies) {
+    const auto passes = bodies.is_any_wild() ? &ContactKernels::wild : &ContactKernels::calm;
     const std::span<ContactBlock> blocks = layout_.blocks();
-    (kernels_.*pass)(blocks.first(layout_.overflow_first()), bodies.bodies());
-    (overflow_kernels_.*pass)(blocks.subspan(layout_.overflow_first()), bodies.bodies());
+    (kernels_.*passes.*pass)(blocks.first(layout_.overflow_first()), bodies.bodies());
+    (overflow_kernels_.*passes.*pass)(blocks.subspan(layout_.overflow_first()), bodies.bodies());
 }
 
 void ContactSolver::relax(SolverBodies& bodies) {
-    run(&ContactKernels::relax, bodies);
+    run(&ContactKernels::Passes::relax, bodies);
     note_impacts();
 }
 
@@ -315,7 +321,7 @@ void ContactSolver::bounce(const DynamicsTables& tables, SolverBodies& bodies, I
         }
         const auto target = static_cast<std::int32_t>(
             -round_shift(restitution * impact.approach[point], kCoefficientFraction));
-        visit_lanes<ScalarLanes>(block, bodies.bodies(), impact.lane, [&](auto& solver) {
+        visit_lanes<ScalarLanes, true>(block, bodies.bodies(), impact.lane, [&](auto& solver) {
             impact.impulse_max[point] +=
                 solver.reach_speed(point, target, impact.impulse_max[point]);
         });

@@ -25,8 +25,8 @@ public:
                  const BodyFrames& frames,
                  const Activity& activity,
                  SolverBodies& bodies);
-    void warm_start(SolverBodies& bodies) { run(&ContactKernels::warm_start, bodies); }
-    void solve(SolverBodies& bodies) { run(&ContactKernels::solve, bodies); }
+    void warm_start(SolverBodies& bodies) { run(&ContactKernels::Passes::warm_start, bodies); }
+    void solve(SolverBodies& bodies) { run(&ContactKernels::Passes::solve, bodies); }
     void relax(SolverBodies& bodies);
     void write(const DynamicsTables& tables);
 
@@ -54,7 +54,7 @@ private:
     void note_impacts();
     void bounce(const DynamicsTables& tables, SolverBodies& bodies, Impact& impact);
 
-    void run(ContactKernels::Pass ContactKernels::*pass, SolverBodies& bodies);
+    void run(ContactKernels::Pass ContactKernels::Passes::*pass, SolverBodies& bodies);
 
     ContactKernels kernels_;
     ContactKernels overflow_kernels_; // scalar: bodies may meet twice in a block

@@ -2,9 +2,11 @@
 
 #include "dynamics/contact_block.h"
 #include "dynamics/lanes.h"
+#include "dynamics/step_constants.h"
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 
 namespace lockwind {
 
@@ -20,14 +22,21 @@ inline constexpr std::int32_t kImpulseMax = 960 * kVelocityOne;
 /// Of that, 480 m/s count for friction, so that a coefficient of 4 stays in the format.
 inline constexpr std::int32_t kFrictionLoadMax = 480 * kVelocityOne;
 
+/// Where a body is wild, speeds count for at most this, so that a separation or an impulse more
+/// fits the format.
+inline constexpr std::int32_t kRowSpeedMax = 1080 * kVelocityOne;
+/// The same of a twist, whose effective mass may be 8.
+inline constexpr std::int32_t kTwistSpeedMax = 128 * kVelocityOne;
+
 /// Separating speeds of a block's points, Q11.20 m/s.
 struct alignas(64) PointSpeeds {
     std::int32_t at[kBlockPoints][kBlockLanes];
 };
 
 /// The passes over one block's lanes from `first`, for contacts of kPoints points; in wider lanes,
-/// contacts that have fewer bear null rows.
-template <class L, std::uint32_t kPoints>
+/// contacts that have fewer bear null rows. kHolds: contacts of wild bodies are held within the
+/// formats where many forces together might leave them.
+template <class L, std::uint32_t kPoints, bool kHolds>
 class BlockSolver {
 public:
     using Vector = typename L::Vector;
@@ -94,9 +103,10 @@ public:
             ContactBlock::Point& p = block_.point[point];
             // Bodies that part fast: what adds up over the substeps must stay in the format, with a
             // speed more.
-            const Vector separation =
-                L::minimum(L::add(lane(p.separation), speed_at(point, along_moved, angular_moved)),
-                           L::set(kSeparationMax));
+            const Vector separation = L::minimum(
+                held(L::add(lane(p.separation), speed_at(point, along_moved, angular_moved)),
+                     kSeparationMax),
+                L::set(kSeparationMax));
             L::store(p.separation + first_, separation);
             const Vector old = lane(p.impulse);
             const Vector v = coupled_speed(speed_at(point, along, angular_), applied, point);
@@ -110,9 +120,9 @@ public:
         apply_normal(applied);
         const Factor friction = factor(block_.friction);
         if constexpr (kPoints > 1) {
-            relax_twist(scale(loaded(twist_load), friction));
+            relax_twist(friction_limit(twist_load, friction));
         }
-        relax_friction(scale(loaded(load), friction));
+        relax_friction(friction_limit(load, friction));
         write_velocities();
     }
 
@@ -163,6 +173,27 @@ private:
     static Vector scale(Vector velocity, const Coefficient& coefficient) {
         return L::template multiply<kCoefficientFraction>(velocity, coefficient);
     }
+
+    /// Positive where one of the two bodies is wild.
+    [[gnu::always_inline]] Vector wild() const {
+        return L::maximum(L::maximum(linear_.a[kWildEntry], linear_.b[kWildEntry]), L::set(0));
+    }
+    /// Within +-most, of a contact that has a wild body.
+    [[gnu::always_inline]] Vector held(Vector value, std::int32_t most) const {
+        if constexpr (!kHolds) {
+            return value;
+        }
+        using Limits = std::numeric_limits<std::int32_t>;
+        const Vector is_wild = wild();
+        return L::clamp(value,
+                        L::select_positive(is_wild, L::set(-most), L::set(Limits::min())),
+                        L::select_positive(is_wild, L::set(most), L::set(Limits::max())));
+    }
+
+    /// What Coulomb's law allows under a load.
+    [[gnu::always_inline]] Vector friction_limit(Vector load, const Factor& friction) const {
+        return held(scale(loaded(load), friction), kImpulseMax);
+    }
     static Vector loaded(Vector load) { return L::minimum(load, L::set(kFrictionLoadMax)); }
     static Wide start() { return L::template start<kCoefficientFraction>(); }
     static Vector finish(Wide sum) { return L::template round<kCoefficientFraction>(sum); }
@@ -176,8 +207,21 @@ private:
             first_, [&](int lane) { return body_a(lane).angular; }, angular_.a);
         L::gather_quad(
             first_, [&](int lane) { return body_b(lane).angular; }, angular_.b);
+        hold_velocities();
+    }
+    [[gnu::always_inline]] void hold(Velocities& velocities, std::int32_t most) const {
+        LOCKWIND_UNROLL
+        for (int axis = 0; axis < 3; ++axis) {
+            velocities.a[axis] = held(velocities.a[axis], most);
+            velocities.b[axis] = held(velocities.b[axis], most);
+        }
+    }
+    [[gnu::always_inline]] void hold_velocities() {
+        hold(linear_, kLinearHeld);
+        hold(angular_, kAngularHeld);
     }
     [[gnu::always_inline]] void write_velocities() {
+        hold_velocities();
         L::scatter_quad(first_, linear_.a, [&](int lane) { return body_a(lane).linear; });
         L::scatter_quad(first_, angular_.a, [&](int lane) { return body_a(lane).angular; });
         L::scatter_quad(first_, linear_.b, [&](int lane) { return body_b(lane).linear; });
@@ -194,7 +238,7 @@ private:
         }
         return along;
     }
-    /// A point's separating speed J v.
+    /// A point's separating speed J v, held to kRowSpeedMax.
     [[gnu::always_inline]] Vector
     speed_at(std::uint32_t point, Wide along, const Velocities& angular) const {
         const ContactBlock::Row& row = block_.point[point].row;
@@ -203,7 +247,7 @@ private:
             along = L::add_product(along, angular.a[axis], factor(row.jacobian_a[axis]));
             along = L::add_product(along, angular.b[axis], factor(row.jacobian_b[axis]));
         }
-        return finish(along);
+        return held(finish(along), kRowSpeedMax);
     }
     /// The velocities that moved the bodies: their J v is the change of s / h.
     [[gnu::always_inline]] void read_moved(Velocities& linear, Velocities& angular) const {
@@ -229,12 +273,56 @@ private:
             const int index = coupling_index(static_cast<int>(point), static_cast<int>(other));
             sum = L::add_product(sum, applied[other], factor(block_.coupling[index]));
         }
-        return L::add(speed, finish(sum));
+        return held(L::add(speed, finish(sum)), kRowSpeedMax);
     }
     [[gnu::always_inline]] Vector accumulate(std::uint32_t point, Vector old, Vector lost) {
         const Vector now = L::clamp(L::subtract(old, lost), L::set(0), lane(block_.impulse_max));
         L::store(block_.point[point].impulse + first_, now);
         return L::subtract(now, old);
+    }
+
+    /// Applies impulses at once, or in parts of which none leaves the formats: a wild body is held
+    /// after each.
+    template <std::uint32_t kCount, class Apply>
+    [[gnu::always_inline]] void apply(const Vector (&impulses)[kCount], Apply&& add) {
+        if constexpr (!kHolds) {
+            add(impulses);
+            return;
+        }
+        const Vector is_wild = wild();
+        Vector rest[kCount];
+        std::copy_n(impulses, kCount, rest);
+        for (int left = 16; left > 0; --left) {
+            Vector part[kCount];
+            for (std::uint32_t index = 0; index < kCount; ++index) {
+                const Vector sixteenth = L::template shift_right<4>(impulses[index]);
+                part[index] =
+                    left == 1 ? rest[index] : L::select_positive(is_wild, sixteenth, rest[index]);
+                rest[index] = L::subtract(rest[index], part[index]);
+            }
+            add(part);
+            hold_velocities();
+        }
+    }
+    [[gnu::always_inline]] void apply_normal(const Vector (&impulses)[kPoints]) {
+        apply(
+            impulses, [&](const Vector(&part)[kPoints]) __attribute__((always_inline)) {
+                add_normal(part);
+            });
+    }
+    [[gnu::always_inline]] void apply_tangent(Vector first, Vector second) {
+        const Vector impulses[2] = {first, second};
+        apply(
+            impulses, [&](const Vector(&part)[2]) __attribute__((always_inline)) {
+                add_tangent(part[0], part[1]);
+            });
+    }
+    [[gnu::always_inline]] void apply_twist(Vector impulse) {
+        const Vector impulses[1] = {impulse};
+        apply(
+            impulses, [&](const Vector(&part)[1]) __attribute__((always_inline)) {
+                add_twist(part[0]);
+            });
     }
 
     /// Changes the linear velocities by what along(share, out) makes of a body's share.
@@ -256,7 +344,7 @@ private:
         }
     }
 
-    [[gnu::always_inline]] void apply_normal(const Vector (&impulse)[kPoints]) {
+    [[gnu::always_inline]] void add_normal(const Vector (&impulse)[kPoints]) {
         Vector total = impulse[0];
         LOCKWIND_UNROLL
         for (std::uint32_t point = 1; point < kPoints; ++point) {
@@ -284,7 +372,7 @@ private:
         }
     }
 
-    [[gnu::always_inline]] void apply_tangent(Vector first, Vector second) {
+    [[gnu::always_inline]] void add_tangent(Vector first, Vector second) {
         const ContactBlock::Row& row_0 = block_.tangent_row[0];
         const ContactBlock::Row& row_1 = block_.tangent_row[1];
         const auto sum_of = [](Vector x, const Factor& by_x, Vector y, const Factor& by_y) {
@@ -313,7 +401,7 @@ private:
         }
     }
 
-    [[gnu::always_inline]] void apply_twist(Vector impulse) {
+    [[gnu::always_inline]] void add_twist(Vector impulse) {
         LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             angular_.a[axis] =
@@ -332,10 +420,12 @@ private:
             spin_a = L::add_product(spin_a, angular_.a[axis], normal);
             spin_b = L::add_product(spin_b, angular_.b[axis], normal);
         }
-        const Vector speed = finish(
-            L::add_product(L::add_product(start(), finish(spin_a), factor(block_.twist_lever_a)),
-                           finish(spin_b),
-                           factor(block_.twist_lever_b)));
+        const Vector speed =
+            held(finish(L::add_product(
+                     L::add_product(start(), finish(spin_a), factor(block_.twist_lever_a)),
+                     finish(spin_b),
+                     factor(block_.twist_lever_b))),
+                 kTwistSpeedMax);
         const Vector old = lane(block_.twist_impulse);
         const Vector now = L::clamp(
             L::subtract(old, scale(speed, factor(block_.twist_mass))), L::negate(limit), limit);
@@ -361,11 +451,14 @@ private:
         }
         const Vector old_0 = lane(block_.friction_impulse[0]);
         const Vector old_1 = lane(block_.friction_impulse[1]);
-        const Vector speed_0 = L::add(finish(sum[0]), lane(block_.surface_speed[0]));
+        const Vector speed_0 =
+            held(L::add(finish(sum[0]), lane(block_.surface_speed[0])), kRowSpeedMax);
         const Vector lost_0 = scale(speed_0, factor(block_.tangent_row[0].mass));
         // The first row's impulse changes the second one's speed.
-        const Vector speed_1 = L::subtract(L::add(finish(sum[1]), lane(block_.surface_speed[1])),
-                                           scale(lost_0, factor(block_.tangent_coupling)));
+        const Vector speed_1 =
+            held(L::subtract(L::add(finish(sum[1]), lane(block_.surface_speed[1])),
+                             scale(lost_0, factor(block_.tangent_coupling))),
+                 kRowSpeedMax);
         Vector now_0 = L::subtract(old_0, lost_0);
         Vector now_1 = L::subtract(old_1, scale(speed_1, factor(block_.tangent_row[1].mass)));
         L::clamp_to_cone(now_0, now_1, limit);

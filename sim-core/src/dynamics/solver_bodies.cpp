@@ -48,6 +48,18 @@ void read_terms(const BodyFrame& frame, const BodyProperties& body, BodyTerms& t
     }
 }
 
+/// Whether a body moves so fast that its contacts are to be held within the formats.
+bool is_wild(const SolverBody& body) {
+    constexpr std::uint32_t kMost = kCalmMax;
+    static_assert((kMost & (kMost - 1)) == 0, "so that all speeds are looked at at once");
+    std::uint32_t speeds = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        speeds |= static_cast<std::uint32_t>(body.linear[axis]) + kMost;
+        speeds |= static_cast<std::uint32_t>(body.angular[axis]) + kMost;
+    }
+    return speeds >= 2 * kMost;
+}
+
 /// From what a row of an arm of 1.5 bounding radii has at most: a response of leverage x ratio, and
 /// 1 + leverage^2 x ratio between two rows. Both are to stay below 8, the former below 7.75. What a
 /// box, capsule or sphere has on its surface stays below 7: of those, only deep contacts count.
@@ -84,6 +96,7 @@ void SolverBodies::read(const StepConstants& constants,
                         const Activity& activity) {
     dynamic_rows_.clear();
     kinematic_rows_.clear();
+    is_any_wild_ = false;
     for (const BodyRow row : activity.rows()) {
         const BodyProperties& body = tables.properties[row];
         read_terms(frames[row], body, terms_[row]);
@@ -123,6 +136,9 @@ void SolverBodies::read_body(const StepConstants& constants,
         bound += 8 * magnitude(std::int64_t{solver.angular[axis]});
     }
     speed_bound_[row] = raw_saturate<std::int32_t>(bound >> 1);
+    if (is_wild(solver)) {
+        mark_wild(row);
+    }
     if (body.mode == kDynamic) {
         dynamic_rows_.push_back(row);
         course.linear_speed_max = linear_max;
@@ -162,27 +178,28 @@ void SolverBodies::integrate_velocities(const StepConstants& constants, std::uin
             body.linear[axis] = raw_add(free.linear[axis], linear_change);
             body.angular[axis] = raw_add(free.angular[axis], angular_change);
         }
+        if (is_wild(body)) {
+            mark_wild(row);
+        }
     }
 }
 
 void SolverBodies::give(BodyRow row, const std::int64_t linear[3], const std::int64_t angular[3]) {
-    // Held to what all rows and contacts together keep in the format.
-    constexpr std::int64_t kLinearMax =
-        kSolverLinearSpeedMax.raw() >> (Real::kFraction - kVelocityFraction);
-    constexpr std::int64_t kAngularMax =
-        kSolverAngularSpeedMax.raw() >> (Real::kFraction - kVelocityFraction);
     const auto change =
         [](std::int32_t& now, std::int32_t& free, std::int64_t by, std::int64_t most) {
             const std::int64_t held = std::clamp(by, -2 * most, 2 * most);
-            const auto next = static_cast<std::int32_t>(std::clamp(now + held, -most, most));
-            free = raw_add(free, raw_subtract(next, now));
-            now = next;
+            const std::int64_t next = std::clamp(now + held, -most, most);
+            free = static_cast<std::int32_t>(std::clamp(free + next - now, -2 * most, 2 * most));
+            now = static_cast<std::int32_t>(next);
         };
     SolverBody& body = bodies_[row];
     FreeVelocity& velocity = free_[row];
     for (int axis = 0; axis < 3; ++axis) {
-        change(body.linear[axis], velocity.linear[axis], linear[axis], kLinearMax);
-        change(body.angular[axis], velocity.angular[axis], angular[axis], kAngularMax);
+        change(body.linear[axis], velocity.linear[axis], linear[axis], kLinearHeld);
+        change(body.angular[axis], velocity.angular[axis], angular[axis], kAngularHeld);
+    }
+    if (is_wild(body)) {
+        mark_wild(row);
     }
 }
 

@@ -36,6 +36,13 @@ public:
     /// Changes velocities, Q11.20 m/s, by what is not to be repeated in the next substep: what
     /// turns with the bodies, as joints do, starts anew there.
     void give(BodyRow row, const std::int64_t linear[3], const std::int64_t angular[3]);
+    /// A body is wild from where it moves, or a contact brings an impulse, of 128 m/s to the tick's
+    /// end: its contacts are then held within the formats.
+    void mark_wild(BodyRow row) {
+        bodies_[row].linear[kWildEntry] = 1;
+        is_any_wild_ = true;
+    }
+    bool is_any_wild() const { return is_any_wild_; }
     /// The body's orientation at the tick's end, of one that is followed substep by substep;
     /// `orientation` must live until write().
     void set_orientation(BodyRow row, const std::int32_t* orientation) {
@@ -100,6 +107,7 @@ private:
     std::vector<Overreach> overreach_;
     std::vector<BodyRow> dynamic_rows_;
     std::vector<BodyRow> kinematic_rows_;
+    bool is_any_wild_ = false;
 };
 
 } // namespace lockwind

@@ -15,6 +15,10 @@ inline constexpr Real kSolverLinearSpeedMax = 500.0;
 inline constexpr Real kFreeLinearSpeedMax = 1000.0;
 /// The same of angular velocity x gyration radius, which rows multiply by up to 7.
 inline constexpr Real kSolverAngularSpeedMax = 200.0;
+/// What contacts and joints leave a body with, as the solver holds it: many that press one body the
+/// same way stay in the format.
+inline constexpr std::int32_t kLinearHeld = convert<Velocity>(kSolverLinearSpeedMax).raw();
+inline constexpr std::int32_t kAngularHeld = convert<Velocity>(kSolverAngularSpeedMax).raw();
 
 /// A soft constraint (mass-spring-damper) as three factors, Q3.28. Catto, "Soft Constraints", GDC
 /// 2011, and "Solver2D", 2024:

@@ -18,6 +18,7 @@ namespace lockwind {
 namespace {
 
 using testing::Dice;
+using Passes = ContactKernels::Passes;
 
 constexpr int kBodies = 2 * kBlockLanes;
 
@@ -123,6 +124,7 @@ using Bodies = std::array<SolverBody, kBodies>;
 void draw_bodies(Bodies& bodies, Dice& dice) {
     for (SolverBody& body : bodies) {
         fill(body.linear, dice);
+        body.linear[kWildEntry] = dice.chance(100) ? 1 : 0;
         fill(body.angular, dice);
         fill(body.linear_moved, dice);
         fill(body.angular_moved, dice);
@@ -181,10 +183,10 @@ TEST_P(SimdTest, PassesOfRandomBlocksAreThoseOfScalarLanes) {
             }
         }
         const auto friction = block->friction_impulse[0][0];
-        for (const auto pass :
-             {&ContactKernels::warm_start, &ContactKernels::solve, &ContactKernels::relax}) {
-            (scalar.*pass)({block.get(), 1}, bodies.data());
-            (wide.*pass)({other.get(), 1}, others.data());
+        const auto passes = trial % 2 == 0 ? &ContactKernels::calm : &ContactKernels::wild;
+        for (const auto pass : {&Passes::warm_start, &Passes::solve, &Passes::relax}) {
+            (scalar.*passes.*pass)({block.get(), 1}, bodies.data());
+            (wide.*passes.*pass)({other.get(), 1}, others.data());
             ASSERT_NO_FATAL_FAILURE(expect_same(*block, *other)) << "trial " << trial;
             ASSERT_EQ(std::memcmp(bodies.data(), others.data(), sizeof bodies), 0) << trial;
         }
@@ -192,6 +194,33 @@ TEST_P(SimdTest, PassesOfRandomBlocksAreThoseOfScalarLanes) {
     }
     EXPECT_GT(cones, 1000);
     EXPECT_GT(approaching, 1000);
+}
+
+TEST_P(SimdTest, WildPassesGiveContactsWithoutAWildBodyTheSameBits) {
+    const ContactKernels kernels = contact_kernels(GetParam());
+    Dice dice(12);
+    auto block = std::make_unique<ContactBlock>();
+    auto other = std::make_unique<ContactBlock>();
+    int held = 0;
+    for (int trial = 0; trial < 2000; ++trial) {
+        draw_block(*block, dice);
+        *other = *block;
+        Bodies bodies{};
+        draw_bodies(bodies, dice);
+        Bodies others = bodies;
+        for (const auto pass : {&Passes::warm_start, &Passes::solve, &Passes::relax}) {
+            (kernels.calm.*pass)({block.get(), 1}, bodies.data());
+            (kernels.wild.*pass)({other.get(), 1}, others.data());
+        }
+        for (std::size_t lane = 0; lane < kBlockLanes; ++lane) {
+            const SolverBody* pair = &bodies[2 * lane];
+            const bool is_same = std::memcmp(pair, &others[2 * lane], 2 * sizeof *pair) == 0;
+            const bool is_wild = (pair[0].linear[kWildEntry] | pair[1].linear[kWildEntry]) != 0;
+            ASSERT_TRUE(is_wild || is_same) << trial;
+            held += is_same ? 0 : 1;
+        }
+    }
+    EXPECT_GT(held, 1000);
 }
 
 /// A manifold and bodies as bodies of any shape and place might bring them.
