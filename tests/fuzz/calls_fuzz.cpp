@@ -282,7 +282,11 @@ private:
         draws_.begin_definition();
         const BodyId id = draws_.below(kIds);
         world_.apply_impulse(id, draws_.vector(), draws_.vector());
+        world_.apply_force(id, draws_.vector(), draws_.vector());
         world_.apply_torque(id, draws_.vector());
+        if (draws_.flag()) {
+            world_.set_velocity(id, draws_.vector(), draws_.vector());
+        }
         return true;
     }
     bool keep_or_return() {

@@ -120,12 +120,15 @@ public:
     bool apply_impulse(BodyId id, const Vec3& impulse, const Vec3& point); // N s, at point
     bool apply_force(BodyId id, const Vec3& force, const Vec3& point);     // N over the next tick
     bool apply_torque(BodyId id, const Vec3& torque);                      // N m over the next tick
+    /// m/s and rad/s, held to the settings' limits; steers kinematic bodies, too, and ends no
+    /// contact. False where there is no body that moves.
+    bool set_velocity(BodyId id, const Vec3& linear, const Vec3& angular);
     /// An id that was ever used must not come back: only living bodies and pods are checked.
     Status create_body(const BodyDefinition& definition);
     bool destroy_body(BodyId id); // and its joints
-    /// Makes a living body anew from a definition with its id and shape, joints kept: hands a
-    /// kinematic body over to the solver and back, or changes its mass, material or layer. What it
-    /// touches begins anew. An Error changes nothing.
+    /// Makes a body anew from a definition with its id and shape, joints kept: hands a kinematic
+    /// body over to the solver and back, or changes its place, mass, material or layer. What it
+    /// touches begins anew. Not of pods, nor of balls that they shot. An Error changes nothing.
     Status redefine_body(const BodyDefinition& definition);
 
     /// Between steps, as the calls above. An id that was ever used must not come back.
@@ -149,8 +152,8 @@ public:
     /// The first hit of each body on it, by fraction, then id.
     std::vector<RayHit>
     ray_cast_all(const Vec3& from, const Vec3& to, const QueryFilter& filter = {}) const;
-    /// Whether overlap and shape_cast take a shape: any that a kinematic body may have. The Error
-    /// says why not; they assert it.
+    /// Whether overlap and shape_cast take a shape: any convex one that a kinematic body may have.
+    /// The Error says why not; they assert it.
     Status check_query_shape(const ShapeDefinition& shape) const;
     /// Bodies that touch or overlap a shape (error 2 um), by id.
     std::vector<BodyId> overlap(const ShapeDefinition& shape,

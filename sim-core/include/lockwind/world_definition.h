@@ -56,7 +56,7 @@ struct BodyDefinition {
     CombineRule restitution_rule = CombineRule::maximum;
     std::uint32_t layer = 0;         // below kLayerCount
     std::uint32_t mask = kAllLayers; // bit L: meets bodies of layer L whose masks agree
-    bool sensor = false;             // tells what overlaps it, and stops nothing
+    bool sensor = false;             // tells which dynamic bodies overlap it, and stops nothing
     CollisionMode collision_mode = CollisionMode::discrete;
     std::uint32_t substeps = 0; // 1 .. 16 a tick of its island's; 0: the settings'
     bool can_sleep = true;      // false keeps what it touches awake too
@@ -128,7 +128,7 @@ struct PodDefinition {
 /// What becomes of a body that moves out of the bounds.
 enum class BoundsPolicy : std::uint8_t {
     destroy = 0, // it is destroyed; a pod is put back at its start
-    wrap = 1,    // it goes on from the opposite side
+    wrap = 1,    // it goes on from the opposite side, alone: a joint draws it back across the world
     error = 2,   // the step fails and names it
 };
 

@@ -134,7 +134,8 @@ bool World::apply_impulse(BodyId id, const Vec3& impulse, const Vec3& point) {
     const BodyProperties& properties = tables.properties[row];
     const Vec3 change = velocity_change(impulse, InverseMass::from_raw(properties.inverse_mass));
     constexpr Real kReachMax = 65536;
-    const Vec3 arm = clamped(point - read_position(motion), kReachMax);
+    constexpr Real kPlaceMax = 1 << 30; // far beyond reach, and no difference to a place overflows
+    const Vec3 arm = clamped(clamped(point, kPlaceMax) - read_position(motion), kReachMax);
     write_velocity(read_velocity(motion.linear_velocity) + change, motion.linear_velocity);
     write_velocity(read_velocity(motion.angular_velocity) +
                        spin_change(cross(arm, change), motion, properties),
@@ -165,6 +166,24 @@ bool World::apply_torque(BodyId id, const Vec3& torque) {
     write_velocity(read_velocity(motion.angular_velocity) +
                        spin_change(by_mass, motion, properties),
                    motion.angular_velocity);
+    wake_body(tables, row);
+    impl_->versions.touch(section::kBody, row);
+    impl_->versions.touch(section::kBodySleep, row);
+    return true;
+}
+
+bool World::set_velocity(BodyId id, const Vec3& linear, const Vec3& angular) {
+    const DynamicsTables tables = impl_->tables();
+    const BodyRow row = row_of(tables.motion, id);
+    if (row == kNoIndex ||
+        tables.properties[row].mode == static_cast<std::uint8_t>(BodyMode::fixed)) {
+        return false;
+    }
+    const WorldSettings& settings = impl_->settings;
+    const auto radius = convert<Real>(Length::from_raw(tables.properties[row].gyration_radius));
+    BodyMotion& motion = tables.motion[row];
+    write_velocity(clamped(linear, settings.linear_speed_max), motion.linear_velocity);
+    write_velocity(clamped(angular, settings.angular_speed_max) * radius, motion.angular_velocity);
     wake_body(tables, row);
     impl_->versions.touch(section::kBody, row);
     impl_->versions.touch(section::kBodySleep, row);

@@ -62,6 +62,69 @@ TEST(WorldImpulse, TurnsATiltedBoxByItsWorldInertia) {
     expect_near(world->body(1)->angular_velocity, 0, 0, 1 / 5.0, 1e-4);
 }
 
+TEST(WorldImpulse, TurnsTheRightWayFromAnyPoint) {
+    const Real far[] = {70000, 3e8, Real::highest()};
+    for (const Real distance : far) {
+        WorldDefinition scene = weightless();
+        scene.bodies.push_back(sphere(1, {-20, 0, 0}, 0.5));
+        scene.bodies.push_back(sphere(2, {20, 0, 0}, 0.5));
+        const WorldPtr world = make_world(scene);
+        ASSERT_TRUE(world->apply_impulse(1, {0, 0.001, 0}, {distance, 0, 0}));
+        ASSERT_TRUE(world->apply_force(2, {0, 0.06, 0}, {-distance, 0, 0}));
+        EXPECT_GT(world->body(1)->angular_velocity.z, Real(0)) << to_double(distance);
+        EXPECT_LT(world->body(2)->angular_velocity.z, Real(0)) << to_double(distance);
+    }
+}
+
+/// What stands on a lift that is steered goes with it, without a new contact.
+TEST(WorldVelocity, SteersAKinematicBodyAndEndsNoContact) {
+    WorldDefinition scene;
+    BodyDefinition lift = box(1, {0, 0, 0}, {2, 0.5, 2});
+    lift.mode = BodyMode::kinematic;
+    scene.bodies.push_back(lift);
+    scene.bodies.push_back(box(2, {0, 1, 0}, {0.5, 0.5, 0.5}));
+    const WorldPtr world = make_world(scene);
+    const auto has_contact_event = [&] {
+        const auto events = world->events();
+        return std::any_of(events.begin(), events.end(), [](const Event& event) {
+            return event.type == EventType::contact_begin || event.type == EventType::contact_end;
+        });
+    };
+    step_idle(*world, 120);
+    ASSERT_TRUE(world->body(2)->asleep);
+    ASSERT_TRUE(world->set_velocity(1, {0, 1.5, 0}, {0, 1, 0}));
+    for (int tick = 0; tick < 60; ++tick) {
+        step_idle(*world);
+        EXPECT_FALSE(has_contact_event()) << tick;
+    }
+    expect_near(world->body(1)->position, 0, 1.5, 0, 1e-4);
+    expect_near(world->body(2)->position, 0, 2.5, 0, 0.01);
+    expect_near(world->body(2)->angular_velocity, 0, 1, 0, 0.05);
+    ASSERT_TRUE(world->set_velocity(1, {}, {}));
+    step_idle(*world, 120);
+    expect_near(world->body(1)->position, 0, 1.5, 0, 1e-4);
+    EXPECT_TRUE(world->body(2)->asleep);
+}
+
+TEST(WorldVelocity, IsHeldToTheLimitsAndOfNoFixedBody) {
+    WorldDefinition scene = weightless();
+    scene.bodies.push_back(ground(1));
+    scene.bodies.push_back(sphere(2, {0, 5, 0}, 0.5));
+    const WorldPtr world = make_world(scene);
+    EXPECT_FALSE(world->set_velocity(1, {1, 0, 0}, {}));
+    EXPECT_FALSE(world->set_velocity(3, {1, 0, 0}, {}));
+    ASSERT_TRUE(world->set_velocity(2, {1, 2, 3}, {4, 5, 6}));
+    expect_near(world->body(2)->linear_velocity, 1, 2, 3, 1e-5);
+    expect_near(world->body(2)->angular_velocity, 4, 5, 6, 1e-4);
+    const Real huge = Real::highest();
+    ASSERT_TRUE(world->set_velocity(2, {Real::lowest(), 0, 0}, {0, 0, huge}));
+    expect_near(
+        world->body(2)->linear_velocity, -to_double(scene.settings.linear_speed_max), 0, 0, 1e-5);
+    EXPECT_TRUE(world->check().ok());
+    step_idle(*world, 3);
+    EXPECT_TRUE(world->check().ok());
+}
+
 TEST(WorldImpulse, MovesNothingButDynamicBodies) {
     WorldDefinition scene;
     scene.bodies.push_back(ground(1));
@@ -82,8 +145,14 @@ TEST(WorldImpulse, AnyForceLeavesAStateThatCanBeStepped) {
     WorldDefinition scene = busy_scene(10, 1);
     const WorldPtr world = make_world(scene);
     const Real huge = Real::highest();
-    for (const Vec3& vector : {Vec3{huge, huge, huge}, Vec3{-huge, huge, 1}, Vec3{1, 1, -huge}}) {
+    const Real lowest = Real::lowest();
+    for (const Vec3& vector : {Vec3{huge, huge, huge},
+                               Vec3{-huge, huge, 1},
+                               Vec3{1, 1, -huge},
+                               Vec3{lowest, lowest, lowest}}) {
         EXPECT_TRUE(world->apply_impulse(100, vector, {30000, -30000, 30000}));
+        EXPECT_TRUE(world->apply_impulse(102, {1, 1, 1}, {vector.x, vector.z, Real::lowest()}));
+        EXPECT_TRUE(world->apply_force(103, vector, vector));
         EXPECT_TRUE(world->apply_torque(101, vector));
         EXPECT_TRUE(world->check().ok()) << world->check().error().message;
         step_idle(*world, 3);
