@@ -17,6 +17,10 @@ BodyDefinition random_body(Draws& draws, BodyId id) {
     const auto side = [&] { return real(size * draws.uniform(0.3, 1)); };
     BodyDefinition body =
         draws.chance(0.3) ? sphere(id, {}, side()) : box(id, {}, {side(), side(), side()});
+    if (draws.chance(0.2)) { // a rod, whose ends are far from its centre
+        body.shape.half_extents = {0.05, 0.05, real(draws.uniform(0.5, 1.2))};
+        body.shape.type = ShapeType::box;
+    }
     body.orientation = turn(draws.direction(), draws.uniform(0, 3));
     body.friction = real(draws.uniform(0, 4));
     body.restitution = real(draws.chance(0.5) ? draws.uniform(0, 1) : 0);
@@ -81,13 +85,28 @@ WorldDefinition ground_scene() {
     return scene;
 }
 
+/// Throws one of the bodies as fast and with as much spin as there is.
+void throw_one(Draws& draws, World& world) {
+    const auto count = static_cast<double>(world.body_count());
+    const BodyView body = world.body_at(static_cast<BodyRow>(draws.uniform(0, count)));
+    const auto draw = [&](double most) { return real(draws.uniform(-most, most)); };
+    world.set_velocity(
+        body.id, {draw(500), draw(500), draw(500)}, {draw(1000), draw(1000), draw(1000)});
+}
+
 TEST(Violence, LeavesAStateThatIsValid) {
     int fast = 0;
     for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
+        Draws draws(1000 + seed);
         WorldDefinition scene = ground_scene();
+        scene.settings.tick_rate_hz = static_cast<std::uint32_t>(draws.uniform(10, 241));
+        scene.settings.substeps = static_cast<std::uint32_t>(draws.uniform(1, 9));
         add_violence(scene, seed, {0, 2, 0});
         const WorldPtr world = make_world(scene);
         for (int tick = 0; tick < kTicks; ++tick) {
+            if (seed % 2 == 0 && tick % 5 == 0) {
+                throw_one(draws, *world);
+            }
             step_idle(*world);
             ASSERT_TRUE(world->check().ok()) << seed << " at " << tick;
             for (const ContactView& contact : world->contacts()) {

@@ -120,8 +120,9 @@ public:
     bool apply_impulse(BodyId id, const Vec3& impulse, const Vec3& point); // N s, at point
     bool apply_force(BodyId id, const Vec3& force, const Vec3& point);     // N over the next tick
     bool apply_torque(BodyId id, const Vec3& torque);                      // N m over the next tick
-    /// m/s and rad/s, held to the settings' limits; steers kinematic bodies, too, and ends no
-    /// contact. False where there is no body that moves.
+    /// m/s and rad/s, each axis held to the settings' limits and to what a step turns a body by at
+    /// most, 200 m/s at its gyration radius; steers kinematic bodies, too, and ends no contact.
+    /// False where there is no body that moves.
     bool set_velocity(BodyId id, const Vec3& linear, const Vec3& angular);
     /// An id that was ever used must not come back: only living bodies and pods are checked.
     Status create_body(const BodyDefinition& definition);

@@ -14,6 +14,7 @@ namespace lockwind {
 struct ContactKernels {
     using Pass = void (*)(std::span<ContactBlock> blocks, SolverBody* bodies);
     struct Passes {
+        void (*read_speeds)(ContactBlock& block, SolverBody* bodies, PointSpeeds& out);
         Pass warm_start;
         Pass solve;
         Pass relax;
@@ -24,7 +25,6 @@ struct ContactKernels {
                     std::int32_t separation_max,
                     RowInputs& inputs,
                     ContactBlock& block);
-    void (*read_speeds)(ContactBlock& block, SolverBody* bodies, PointSpeeds& out);
     Passes calm; // where no body is wild
     Passes wild; // the same for all contacts that have no wild body
 };
@@ -65,22 +65,25 @@ void visit_block(ContactBlock& block, SolverBody* bodies, Visit&& visit) {
 
 template <class L, bool kHolds>
 ContactKernels::Passes passes_of() {
-    return {[](std::span<ContactBlock> blocks, SolverBody* bodies) {
-                for (ContactBlock& block : blocks) {
-                    visit_block<L, kHolds>(
-                        block, bodies, [](auto& solver) { solver.warm_start(); });
-                }
-            },
-            [](std::span<ContactBlock> blocks, SolverBody* bodies) {
-                for (ContactBlock& block : blocks) {
-                    visit_block<L, kHolds>(block, bodies, [](auto& solver) { solver.solve(); });
-                }
-            },
-            [](std::span<ContactBlock> blocks, SolverBody* bodies) {
-                for (ContactBlock& block : blocks) {
-                    visit_block<L, kHolds>(block, bodies, [](auto& solver) { solver.relax(); });
-                }
-            }};
+    return {
+        [](ContactBlock& block, SolverBody* bodies, PointSpeeds& out) {
+            visit_block<L, kHolds>(block, bodies, [&](auto& solver) { solver.read_speeds(out); });
+        },
+        [](std::span<ContactBlock> blocks, SolverBody* bodies) {
+            for (ContactBlock& block : blocks) {
+                visit_block<L, kHolds>(block, bodies, [](auto& solver) { solver.warm_start(); });
+            }
+        },
+        [](std::span<ContactBlock> blocks, SolverBody* bodies) {
+            for (ContactBlock& block : blocks) {
+                visit_block<L, kHolds>(block, bodies, [](auto& solver) { solver.solve(); });
+            }
+        },
+        [](std::span<ContactBlock> blocks, SolverBody* bodies) {
+            for (ContactBlock& block : blocks) {
+                visit_block<L, kHolds>(block, bodies, [](auto& solver) { solver.relax(); });
+            }
+        }};
 }
 
 template <class L>
@@ -94,9 +97,6 @@ ContactKernels kernels_of() {
             for (int first = 0; first < block.lane_count; first += L::kWidth) {
                 BlockPreparation<L>(terms, inputs, block, first).run(substep_rate, separation_max);
             }
-        },
-        [](ContactBlock& block, SolverBody* bodies, PointSpeeds& out) {
-            visit_block<L, false>(block, bodies, [&](auto& solver) { solver.read_speeds(out); });
         },
         passes_of<L, false>(),
         passes_of<L, true>()};

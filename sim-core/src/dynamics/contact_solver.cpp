@@ -158,7 +158,9 @@ void PairReader::read(ContactBlock& block, int lane, PairTerms& terms) const {
     block.friction_impulse[0][lane] = impulse.friction[0];
     block.friction_impulse[1][lane] = impulse.friction[1];
     block.twist_impulse[lane] = impulse.twist;
-    if (load > kCalmMax) {
+    const std::int32_t sideways =
+        magnitude(impulse.friction[0]) | magnitude(impulse.friction[1]) | magnitude(impulse.twist);
+    if (load > kCalmMax || sideways > kCalmMax) {
         bodies.mark_wild(a_moves ? row_a : row_b);
     }
 }
@@ -198,6 +200,10 @@ void fill_padding(BodyRow padding_row, ContactBlock& block, PairTerms& terms) {
         block.friction_impulse[1][lane] = 0;
         block.twist_impulse[lane] = 0;
     }
+}
+
+ContactKernels::Passes ContactKernels::*passes_for(const SolverBodies& bodies) {
+    return bodies.is_any_wild() ? &ContactKernels::wild : &ContactKernels::calm;
 }
 
 } // namespace
@@ -252,7 +258,7 @@ void ContactSolver::find_impacts(std::uint32_t index, SolverBodies& bodies) {
         return;
     }
     PointSpeeds speeds;
-    kernels_.read_speeds(block, bodies.bodies(), speeds);
+    (kernels_.*passes_for(bodies)).read_speeds(block, bodies.bodies(), speeds);
     for (int lane = 0; lane < block.lane_count; ++lane) {
         Impact impact{block.pair[lane], index, lane, {}, {}, 0};
         for (int point = 0; point < block.point_count[lane]; ++point) {
@@ -278,7 +284,7 @@ void ContactSolver::note_impacts() {
 }
 
 void ContactSolver::run(ContactKernels::Pass ContactKernels::Passes::*pass, SolverBodies& bodies) {
-    const auto passes = bodies.is_any_wild() ? &ContactKernels::wild : &ContactKernels::calm;
+    const auto passes = passes_for(bodies);
     const std::span<ContactBlock> blocks = layout_.blocks();
     (kernels_.*passes.*pass)(blocks.first(layout_.overflow_first()), bodies.bodies());
     (overflow_kernels_.*passes.*pass)(blocks.subspan(layout_.overflow_first()), bodies.bodies());

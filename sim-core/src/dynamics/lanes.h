@@ -104,6 +104,11 @@ struct ScalarLanes {
     static Vector round(Wide sum) {
         return raw_narrow<std::int32_t>(sum >> Shift);
     }
+    /// round(), within +-most.
+    template <int Shift>
+    static Vector round_within(Wide sum, std::int32_t most) {
+        return static_cast<Vector>(std::clamp<Wide>(sum >> Shift, -most, most));
+    }
     template <int Shift, class Multiplier>
     static Vector multiply(Vector a, Multiplier b) {
         return round<Shift>(add_product(start<Shift>(), a, b));

@@ -25,8 +25,10 @@ inline constexpr std::int32_t kFrictionLoadMax = 480 * kVelocityOne;
 /// Where a body is wild, speeds count for at most this, so that a separation or an impulse more
 /// fits the format.
 inline constexpr std::int32_t kRowSpeedMax = 1080 * kVelocityOne;
-/// The same of a twist, whose effective mass may be 8.
+/// The same of what a coefficient of up to 8 is to multiply: a twist, the first tangent's impulse;
+/// and of what bears on a lever of up to 7.5.
 inline constexpr std::int32_t kTwistSpeedMax = 128 * kVelocityOne;
+inline constexpr std::int32_t kLeverLoadMax = 256 * kVelocityOne;
 
 /// Separating speeds of a block's points, Q11.20 m/s.
 struct alignas(64) PointSpeeds {
@@ -101,12 +103,11 @@ public:
         LOCKWIND_UNROLL
         for (std::uint32_t point = 0; point < kPoints; ++point) {
             ContactBlock::Point& p = block_.point[point];
-            // Bodies that part fast: what adds up over the substeps must stay in the format, with a
-            // speed more.
-            const Vector separation = L::minimum(
-                held(L::add(lane(p.separation), speed_at(point, along_moved, angular_moved)),
-                     kSeparationMax),
-                L::set(kSeparationMax));
+            // What adds up over the substeps must stay in the format, with a speed more.
+            const Vector separation =
+                L::clamp(L::add(lane(p.separation), speed_at(point, along_moved, angular_moved)),
+                         L::set(-kSeparationMax),
+                         L::set(kSeparationMax));
             L::store(p.separation + first_, separation);
             const Vector old = lane(p.impulse);
             const Vector v = coupled_speed(speed_at(point, along, angular_), applied, point);
@@ -115,7 +116,8 @@ public:
             applied[point] = accumulate(point, old, lost);
             const Vector now = L::add(old, applied[point]);
             load = L::add(load, now);
-            twist_load = L::add(twist_load, loaded(scale(now, factor(p.lever))));
+            twist_load =
+                L::add(twist_load, loaded(scale(held(now, kLeverLoadMax), factor(p.lever))));
         }
         apply_normal(applied);
         const Factor friction = factor(block_.friction);
@@ -143,8 +145,9 @@ public:
         read_velocities();
         const std::int32_t speed =
             speed_at(static_cast<std::uint32_t>(point), speed_along(linear_), angular_);
-        const std::int32_t lost =
-            scale(L::subtract(speed, target), factor(block_.point[point].row.mass));
+        const std::int32_t missing = held(
+            L::subtract(speed, std::clamp(target, -kSeparationMax, kSeparationMax)), kRowSpeedMax);
+        const std::int32_t lost = scale(missing, factor(block_.point[point].row.mass));
         std::int32_t applied[kPoints] = {};
         applied[point] = L::subtract(L::maximum(L::subtract(carried, lost), 0), carried);
         apply_normal(applied);
@@ -190,6 +193,20 @@ private:
                         L::select_positive(is_wild, L::set(most), L::set(Limits::max())));
     }
 
+    /// finish() of a sum, within +-kRowSpeedMax of a contact that has a wild body.
+    [[gnu::always_inline]] Vector held_finish(Wide sum) const {
+        if constexpr (!kHolds) {
+            return finish(sum);
+        } else if constexpr (L::kWidth == 1) { // so that nothing is made that leaves the format
+            return wild() > 0 ? L::template round_within<kCoefficientFraction>(sum, kRowSpeedMax)
+                              : finish(sum);
+        } else {
+            return L::select_positive(
+                wild(),
+                L::template round_within<kCoefficientFraction>(sum, kRowSpeedMax),
+                finish(sum));
+        }
+    }
     /// What Coulomb's law allows under a load.
     [[gnu::always_inline]] Vector friction_limit(Vector load, const Factor& friction) const {
         return held(scale(loaded(load), friction), kImpulseMax);
@@ -207,7 +224,9 @@ private:
             first_, [&](int lane) { return body_a(lane).angular; }, angular_.a);
         L::gather_quad(
             first_, [&](int lane) { return body_b(lane).angular; }, angular_.b);
-        hold_velocities();
+        if constexpr (kHolds) {
+            hold_velocities();
+        }
     }
     [[gnu::always_inline]] void hold(Velocities& velocities, std::int32_t most) const {
         LOCKWIND_UNROLL
@@ -220,8 +239,19 @@ private:
         hold(linear_, kLinearHeld);
         hold(angular_, kAngularHeld);
     }
+    /// What a wild body throws is wild from here on.
+    [[gnu::always_inline]] void pass_wildness_on() {
+        const Vector is_wild = wild();
+        linear_.a[kWildEntry] =
+            L::select_positive(lane(block_.share_a), is_wild, linear_.a[kWildEntry]);
+        linear_.b[kWildEntry] =
+            L::select_positive(lane(block_.share_b), is_wild, linear_.b[kWildEntry]);
+    }
     [[gnu::always_inline]] void write_velocities() {
-        hold_velocities();
+        if constexpr (kHolds) {
+            hold_velocities();
+            pass_wildness_on();
+        }
         L::scatter_quad(first_, linear_.a, [&](int lane) { return body_a(lane).linear; });
         L::scatter_quad(first_, angular_.a, [&](int lane) { return body_a(lane).angular; });
         L::scatter_quad(first_, linear_.b, [&](int lane) { return body_b(lane).linear; });
@@ -247,7 +277,7 @@ private:
             along = L::add_product(along, angular.a[axis], factor(row.jacobian_a[axis]));
             along = L::add_product(along, angular.b[axis], factor(row.jacobian_b[axis]));
         }
-        return held(finish(along), kRowSpeedMax);
+        return held_finish(along);
     }
     /// The velocities that moved the bodies: their J v is the change of s / h.
     [[gnu::always_inline]] void read_moved(Velocities& linear, Velocities& angular) const {
@@ -273,7 +303,7 @@ private:
             const int index = coupling_index(static_cast<int>(point), static_cast<int>(other));
             sum = L::add_product(sum, applied[other], factor(block_.coupling[index]));
         }
-        return held(L::add(speed, finish(sum)), kRowSpeedMax);
+        return held(L::add(speed, held_finish(sum)), kRowSpeedMax);
     }
     [[gnu::always_inline]] Vector accumulate(std::uint32_t point, Vector old, Vector lost) {
         const Vector now = L::clamp(L::subtract(old, lost), L::set(0), lane(block_.impulse_max));
@@ -421,7 +451,7 @@ private:
             spin_b = L::add_product(spin_b, angular_.b[axis], normal);
         }
         const Vector speed =
-            held(finish(L::add_product(
+            held(held_finish(L::add_product(
                      L::add_product(start(), finish(spin_a), factor(block_.twist_lever_a)),
                      finish(spin_b),
                      factor(block_.twist_lever_b))),
@@ -452,12 +482,14 @@ private:
         const Vector old_0 = lane(block_.friction_impulse[0]);
         const Vector old_1 = lane(block_.friction_impulse[1]);
         const Vector speed_0 =
-            held(L::add(finish(sum[0]), lane(block_.surface_speed[0])), kRowSpeedMax);
+            held(L::add(held_finish(sum[0]), lane(block_.surface_speed[0])), kRowSpeedMax);
         const Vector lost_0 = scale(speed_0, factor(block_.tangent_row[0].mass));
         // The first row's impulse changes the second one's speed.
+        const Vector alone_1 =
+            held(L::add(held_finish(sum[1]), lane(block_.surface_speed[1])), kImpulseMax);
         const Vector speed_1 =
-            held(L::subtract(L::add(finish(sum[1]), lane(block_.surface_speed[1])),
-                             scale(lost_0, factor(block_.tangent_coupling))),
+            held(L::subtract(alone_1,
+                             scale(held(lost_0, kTwistSpeedMax), factor(block_.tangent_coupling))),
                  kRowSpeedMax);
         Vector now_0 = L::subtract(old_0, lost_0);
         Vector now_1 = L::subtract(old_1, scale(speed_1, factor(block_.tangent_row[1].mass)));

@@ -168,6 +168,11 @@ void SolverBodies::integrate_velocities(const StepConstants& constants, std::uin
     for (const BodyRow row : dynamic_rows_) {
         SolverBody& body = bodies_[row];
         FreeVelocity& free = free_[row];
+        if (is_wild(body)) {
+            mark_wild(row);
+            integrate_wild(gravity, substep == 0, row);
+            continue;
+        }
         for (int axis = 0; axis < 3; ++axis) {
             const std::int32_t linear_change =
                 substep == 0 ? 0 : raw_subtract(body.linear[axis], free.linear[axis]);
@@ -178,9 +183,23 @@ void SolverBodies::integrate_velocities(const StepConstants& constants, std::uin
             body.linear[axis] = raw_add(free.linear[axis], linear_change);
             body.angular[axis] = raw_add(free.angular[axis], angular_change);
         }
-        if (is_wild(body)) {
-            mark_wild(row);
-        }
+    }
+}
+
+/// The same, held to what stays in the format.
+void SolverBodies::integrate_wild(const std::int32_t* gravity, bool is_first, BodyRow row) {
+    const auto integrate =
+        [&](std::int32_t& now, std::int32_t& free, std::int64_t acceleration, std::int64_t most) {
+            const std::int64_t change =
+                is_first ? 0 : std::clamp(std::int64_t{now} - free, -most, most);
+            free = static_cast<std::int32_t>(std::clamp(now + acceleration, -2 * most, 2 * most));
+            now = static_cast<std::int32_t>(free + change);
+        };
+    SolverBody& body = bodies_[row];
+    FreeVelocity& velocity = free_[row];
+    for (int axis = 0; axis < 3; ++axis) {
+        integrate(body.linear[axis], velocity.linear[axis], gravity[axis], kLinearHeld);
+        integrate(body.angular[axis], velocity.angular[axis], 0, kAngularHeld);
     }
 }
 
@@ -216,6 +235,9 @@ void SolverBodies::integrate_positions() {
             body.angular_moved[axis] = body.angular[axis];
             course.travel.linear[axis] += body.linear[axis];
             course.travel.angular[axis] += body.angular[axis];
+        }
+        if (is_wild(body)) {
+            mark_wild(row);
         }
     }
 }

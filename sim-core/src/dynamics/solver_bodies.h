@@ -92,6 +92,7 @@ private:
         std::int32_t angular_speed_max;
     };
 
+    void integrate_wild(const std::int32_t* gravity, bool is_first, BodyRow row);
     void read_body(const StepConstants& constants,
                    const BodyMotion& motion,
                    const BodyProperties& body,

@@ -1,4 +1,5 @@
 #include "dynamics/make_body.h"
+#include "dynamics/step_constants.h"
 #include "systems/motion.h"
 #include "world/impl.h"
 
@@ -183,7 +184,8 @@ bool World::set_velocity(BodyId id, const Vec3& linear, const Vec3& angular) {
     const auto radius = convert<Real>(Length::from_raw(tables.properties[row].gyration_radius));
     BodyMotion& motion = tables.motion[row];
     write_velocity(clamped(linear, settings.linear_speed_max), motion.linear_velocity);
-    write_velocity(clamped(angular, settings.angular_speed_max) * radius, motion.angular_velocity);
+    const Vec3 spin = clamped(angular, settings.angular_speed_max) * radius;
+    write_velocity(clamped(spin, kSolverAngularSpeedMax), motion.angular_velocity);
     wake_body(tables, row);
     impl_->versions.touch(section::kBody, row);
     impl_->versions.touch(section::kBodySleep, row);

@@ -186,7 +186,8 @@ const char* bad_properties_field(const BodyProperties& properties) {
     if (properties.friction_rule > kLastRule || properties.restitution_rule > kLastRule) {
         return "friction_rule or restitution_rule";
     }
-    if (!all_within(properties.surface_velocity, convert<Velocity>(kSurfaceSpeedMax).raw())) {
+    // Of a body of parts, along its principal axes.
+    if (!all_within(properties.surface_velocity, 2 * convert<Velocity>(kSurfaceSpeedMax).raw())) {
         return "surface_velocity";
     }
     if (properties.collision_mode > static_cast<std::uint8_t>(CollisionMode::speculative)) {

@@ -110,6 +110,10 @@ struct EightLanes {
     static Vector round(const Wide& sum) {
         return each([&](std::size_t lane) { return One::round<Shift>(sum[lane]); });
     }
+    template <int Shift>
+    static Vector round_within(const Wide& sum, std::int32_t most) {
+        return each([&](std::size_t lane) { return One::round_within<Shift>(sum[lane], most); });
+    }
     template <int Shift, class Multiplier>
     static Vector multiply(const Vector& a, const Multiplier& b) {
         return round<Shift>(add_product(start<Shift>(), a, b));

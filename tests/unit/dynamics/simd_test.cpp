@@ -174,8 +174,9 @@ TEST_P(SimdTest, PassesOfRandomBlocksAreThoseOfScalarLanes) {
         Bodies others = bodies;
         PointSpeeds speeds;
         PointSpeeds other_speeds;
-        scalar.read_speeds(*block, bodies.data(), speeds);
-        wide.read_speeds(*other, others.data(), other_speeds);
+        const auto passes = trial % 2 == 0 ? &ContactKernels::calm : &ContactKernels::wild;
+        (scalar.*passes).read_speeds(*block, bodies.data(), speeds);
+        (wide.*passes).read_speeds(*other, others.data(), other_speeds);
         for (int lane = 0; lane < block->lane_count; ++lane) {
             for (int point = 0; point < block->point_count[lane]; ++point) {
                 ASSERT_EQ(speeds.at[point][lane], other_speeds.at[point][lane]) << trial;
@@ -183,7 +184,6 @@ TEST_P(SimdTest, PassesOfRandomBlocksAreThoseOfScalarLanes) {
             }
         }
         const auto friction = block->friction_impulse[0][0];
-        const auto passes = trial % 2 == 0 ? &ContactKernels::calm : &ContactKernels::wild;
         for (const auto pass : {&Passes::warm_start, &Passes::solve, &Passes::relax}) {
             (scalar.*passes.*pass)({block.get(), 1}, bodies.data());
             (wide.*passes.*pass)({other.get(), 1}, others.data());

@@ -265,6 +265,28 @@ TEST(PartWorld, StateOfALopsidedCompoundCanBeLoaded) {
     EXPECT_TRUE(loaded.ok()) << loaded.error().message;
 }
 
+/// Along the principal axes a running surface may be faster than along any axis of the definition.
+TEST(PartWorld, StateOfACompoundWhoseSurfaceRunsAtFullSpeedCanBeLoaded) {
+    WorldDefinition scene;
+    CompoundDefinition angle;
+    angle.children.resize(2);
+    for (CompoundChild& child : angle.children) {
+        child.shape.type = ShapeType::box;
+        child.shape.half_extents = metres_of(0.5, 0.15, 0.15);
+    }
+    angle.children[1].position = metres_of(0.35, 0.5, 0);
+    angle.children[1].orientation = {0, 0, 0.6, 0.8};
+    scene.compounds = {angle};
+    BodyDefinition body = body_of(1, ShapeType::compound, metres_of(0, 5, 0));
+    body.surface_velocity = {100, 100, 100};
+    scene.bodies = {body};
+    const WorldPtr world = make_world(scene);
+    std::vector<std::byte> state;
+    world->save(state);
+    const Status loaded = world->load(state);
+    EXPECT_TRUE(loaded.ok()) << loaded.error().message;
+}
+
 TEST(PartQueries, FindWhatABruteForceOverSimpleBodiesFinds) {
     // A compound's children as bodies of their own: every query must tell the same.
     QueryDraws draws(17);

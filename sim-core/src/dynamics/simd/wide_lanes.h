@@ -114,6 +114,13 @@ struct WideLanes {
         }();
         return hn::OddEven(hn::BitCast(Tag(), odd), hn::BitCast(Tag(), even));
     }
+    template <int Shift>
+    static Vector round_within(const Wide& sum, std::int32_t most) {
+        const Sum high = hn::Set(SumTag(), std::int64_t{most} << Shift);
+        const Sum low = hn::Neg(high);
+        return round<Shift>(
+            {hn::Min(hn::Max(sum.even, low), high), hn::Min(hn::Max(sum.odd, low), high)});
+    }
     template <int Shift, class Multiplier>
     static Vector multiply(Vector a, const Multiplier& b) {
         return round<Shift>(add_product(start<Shift>(), a, b));
