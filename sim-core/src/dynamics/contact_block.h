@@ -13,7 +13,7 @@ inline constexpr std::uint32_t kBlockPoints = 4;
 
 /// Where a row of four that holds a vector has room for whether its body is wild.
 inline constexpr int kWildEntry = 3;
-inline constexpr std::int32_t kCalmMax = 128 * kVelocityOne;
+inline constexpr std::int32_t kCalmMax = 64 * kVelocityOne;
 
 /// A body's velocities while the substeps run, Q11.20 m/s; angular ones times the gyration radius.
 /// Rows of four, so that a body is one vector register.

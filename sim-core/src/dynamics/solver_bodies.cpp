@@ -136,9 +136,7 @@ void SolverBodies::read_body(const StepConstants& constants,
         bound += 8 * magnitude(std::int64_t{solver.angular[axis]});
     }
     speed_bound_[row] = raw_saturate<std::int32_t>(bound >> 1);
-    if (is_wild(solver)) {
-        mark_wild(row);
-    }
+    mark_if_wild(row);
     if (body.mode == kDynamic) {
         dynamic_rows_.push_back(row);
         course.linear_speed_max = linear_max;
@@ -150,6 +148,14 @@ void SolverBodies::read_body(const StepConstants& constants,
         solver.linear_moved[axis] = solver.linear[axis];
         solver.angular_moved[axis] = solver.angular[axis];
     }
+}
+
+bool SolverBodies::mark_if_wild(BodyRow row) {
+    if (!is_wild(bodies_[row])) {
+        return false;
+    }
+    mark_wild(row);
+    return true;
 }
 
 void SolverBodies::hold_back(const StepConstants& constants, BodyRow row) {
@@ -168,8 +174,7 @@ void SolverBodies::integrate_velocities(const StepConstants& constants, std::uin
     for (const BodyRow row : dynamic_rows_) {
         SolverBody& body = bodies_[row];
         FreeVelocity& free = free_[row];
-        if (is_wild(body)) {
-            mark_wild(row);
+        if (mark_if_wild(row)) {
             integrate_wild(gravity, substep == 0, row);
             continue;
         }
@@ -217,9 +222,7 @@ void SolverBodies::give(BodyRow row, const std::int64_t linear[3], const std::in
         change(body.linear[axis], velocity.linear[axis], linear[axis], kLinearHeld);
         change(body.angular[axis], velocity.angular[axis], angular[axis], kAngularHeld);
     }
-    if (is_wild(body)) {
-        mark_wild(row);
-    }
+    mark_if_wild(row);
 }
 
 void SolverBodies::integrate_positions() {
@@ -236,9 +239,7 @@ void SolverBodies::integrate_positions() {
             course.travel.linear[axis] += body.linear[axis];
             course.travel.angular[axis] += body.angular[axis];
         }
-        if (is_wild(body)) {
-            mark_wild(row);
-        }
+        mark_if_wild(row);
     }
 }
 

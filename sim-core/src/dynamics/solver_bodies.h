@@ -36,7 +36,7 @@ public:
     /// Changes velocities, Q11.20 m/s, by what is not to be repeated in the next substep: what
     /// turns with the bodies, as joints do, starts anew there.
     void give(BodyRow row, const std::int64_t linear[3], const std::int64_t angular[3]);
-    /// A body is wild from where it moves, or a contact brings an impulse, of 128 m/s to the tick's
+    /// A body is wild from where it moves, or a contact brings an impulse, of 64 m/s to the tick's
     /// end: its contacts are then held within the formats.
     void mark_wild(BodyRow row) {
         bodies_[row].linear[kWildEntry] = 1;
@@ -92,6 +92,8 @@ private:
         std::int32_t angular_speed_max;
     };
 
+    /// Returns whether it is.
+    bool mark_if_wild(BodyRow row);
     void integrate_wild(const std::int32_t* gravity, bool is_first, BodyRow row);
     void read_body(const StepConstants& constants,
                    const BodyMotion& motion,
