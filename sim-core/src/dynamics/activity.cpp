@@ -51,10 +51,19 @@ void Activity::read_pairs(const Table<Pair>& pairs) {
     for (std::uint32_t index = 0; index < count; ++index) {
         const Pair& pair = pairs[index];
         // Damaged rows must not lead outside.
-        if (pair.row_a < pair.row_b && pair.row_b < row_count_ &&
-            (is_awake(pair.row_a) || is_awake(pair.row_b))) {
-            pairs_.push_back(index);
+        if (pair.row_a >= pair.row_b || pair.row_b >= row_count_) {
+            continue;
+        }
+        const bool a_is_awake = is_awake(pair.row_a);
+        const bool b_is_awake = is_awake(pair.row_b);
+        if (!a_is_awake && !b_is_awake) {
+            continue;
+        }
+        pairs_.push_back(index);
+        if (!a_is_awake) {
             add_partner(pair.row_a);
+        }
+        if (!b_is_awake) {
             add_partner(pair.row_b);
         }
     }

@@ -101,6 +101,10 @@ struct PairReader {
     SolverBodies& bodies;
 
     void read(ContactBlock& block, int lane, PairTerms& terms) const;
+
+private:
+    void
+    read_twist(const Manifold& manifold, ContactBlock& block, int lane, PairTerms& terms) const;
 };
 
 void PairReader::read(ContactBlock& block, int lane, PairTerms& terms) const {
@@ -131,16 +135,9 @@ void PairReader::read(ContactBlock& block, int lane, PairTerms& terms) const {
                                              : (a_moves ? kCoefficientOne : 0);
     block.share_b[lane] = kCoefficientOne - block.share_a[lane];
     block.friction[lane] = combine(a.friction, b.friction, a.friction_rule, b.friction_rule);
-    const bool a_is_smaller = a_moves && (!b_moves || a.gyration_radius <= b.gyration_radius);
-    const BodyProperties& smaller = a_is_smaller ? a : b;
-    std::int32_t twist =
-        twist_radius(smaller.gyration_radius, a, bodies.terms(row_a), manifold.normal);
-    twist = twist_radius(twist, b, bodies.terms(row_b), manifold.normal);
-    block.twist_lever_a[lane] = a.mode == kFixed ? 0 : -radius_ratio(twist, a.gyration_radius);
-    block.twist_lever_b[lane] = b.mode == kFixed ? 0 : radius_ratio(twist, b.gyration_radius);
-    terms.inverse_radius_min[lane] =
-        twist == smaller.gyration_radius ? smaller.inverse_gyration_radius : inverse_radius(twist);
-    terms.lever_max[lane] = saturate(std::int64_t{twist} * 15 / 2);
+    if (block.point_count_max > 1) {
+        read_twist(manifold, block, lane, terms);
+    }
     terms.overreach_a[lane] = may_overreach(bodies.overreach(row_a), a, manifold) ? 1 : 0;
     terms.overreach_b[lane] = may_overreach(bodies.overreach(row_b), b, manifold) ? 1 : 0;
     const Softness& softness =
@@ -163,6 +160,27 @@ void PairReader::read(ContactBlock& block, int lane, PairTerms& terms) const {
     if (load > kCalmMax || sideways > kCalmMax) {
         bodies.mark_wild(a_moves ? row_a : row_b);
     }
+}
+
+void PairReader::read_twist(const Manifold& manifold,
+                            ContactBlock& block,
+                            int lane,
+                            PairTerms& terms) const {
+    const BodyRow row_a = block.row_a[lane];
+    const BodyRow row_b = block.row_b[lane];
+    const BodyProperties& a = tables.properties[row_a];
+    const BodyProperties& b = tables.properties[row_b];
+    const bool a_is_smaller =
+        a.mode == kDynamic && (b.mode != kDynamic || a.gyration_radius <= b.gyration_radius);
+    const BodyProperties& smaller = a_is_smaller ? a : b;
+    std::int32_t twist =
+        twist_radius(smaller.gyration_radius, a, bodies.terms(row_a), manifold.normal);
+    twist = twist_radius(twist, b, bodies.terms(row_b), manifold.normal);
+    block.twist_lever_a[lane] = a.mode == kFixed ? 0 : -radius_ratio(twist, a.gyration_radius);
+    block.twist_lever_b[lane] = b.mode == kFixed ? 0 : radius_ratio(twist, b.gyration_radius);
+    terms.inverse_radius_min[lane] =
+        twist == smaller.gyration_radius ? smaller.inverse_gyration_radius : inverse_radius(twist);
+    terms.lever_max[lane] = saturate(std::int64_t{twist} * 15 / 2);
 }
 
 /// Lanes without a contact are a contact of nothing with nothing.

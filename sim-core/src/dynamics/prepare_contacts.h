@@ -53,11 +53,18 @@ public:
         for (std::uint32_t point = 0; point < points_; ++point) {
             make_normal_row(point);
         }
-        find_friction_centre();
-        make_levers();
+        // Contacts of one point have their friction there, and resist no twist.
+        const bool has_patch = block_.point_count_max > 1;
+        if (has_patch) {
+            find_friction_centre();
+            make_levers();
+            make_twist_row();
+        } else {
+            std::copy_n(arm_a_[0], 3, centre_a_);
+            std::copy_n(arm_b_[0], 3, centre_b_);
+        }
         make_tangent_row(0);
         make_tangent_row(1);
-        make_twist_row();
     }
 
 private:

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 namespace lockwind {
 
@@ -89,6 +90,12 @@ Sleep::Sleep(const DynamicsSettings& settings)
 
 bool Sleep::wake(const DynamicsTables& tables, const Activity& activity) {
     rows_.clear();
+    const std::span<const BodyRow> touched = activity.partners();
+    const bool may_wake = std::any_of(
+        touched.begin(), touched.end(), [&](BodyRow row) { return is_member(tables, row); });
+    if (!may_wake) {
+        return false;
+    }
     for (const std::uint32_t index : activity.pairs()) {
         const Pair& pair = tables.pairs[index];
         if (!is_pressing(pair, tables)) {

@@ -48,16 +48,25 @@ void read_terms(const BodyFrame& frame, const BodyProperties& body, BodyTerms& t
     }
 }
 
+/// Whether no component leaves +-most. \pre most < 2^30
+bool is_within(const std::int32_t velocity[3], std::int32_t most) {
+    const auto bound = static_cast<std::uint32_t>(most);
+    std::uint32_t largest = 0; // of what is no more than 2 bound within
+    for (int axis = 0; axis < 3; ++axis) {
+        largest = std::max(largest, static_cast<std::uint32_t>(velocity[axis]) + bound);
+    }
+    return largest <= 2 * bound;
+}
+
+void hold_within(std::int32_t velocity[3], std::int32_t most) {
+    for (int axis = 0; axis < 3; ++axis) {
+        velocity[axis] = std::clamp(velocity[axis], -most, most);
+    }
+}
+
 /// Whether a body moves so fast that its contacts are to be held within the formats.
 bool is_wild(const SolverBody& body) {
-    constexpr std::uint32_t kMost = kCalmMax;
-    static_assert((kMost & (kMost - 1)) == 0, "so that all speeds are looked at at once");
-    std::uint32_t speeds = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        speeds |= static_cast<std::uint32_t>(body.linear[axis]) + kMost;
-        speeds |= static_cast<std::uint32_t>(body.angular[axis]) + kMost;
-    }
-    return speeds >= 2 * kMost;
+    return !is_within(body.linear, kCalmMax - 1) || !is_within(body.angular, kCalmMax - 1);
 }
 
 /// From what a row of an arm of 1.5 bounding radii has at most: a response of leverage x ratio, and
@@ -171,18 +180,19 @@ void SolverBodies::hold_back(const StepConstants& constants, BodyRow row) {
 
 void SolverBodies::integrate_velocities(const StepConstants& constants, std::uint32_t substep) {
     const std::int32_t* gravity = constants.gravity[substep];
+    const bool is_first = substep == 0;
     for (const BodyRow row : dynamic_rows_) {
         SolverBody& body = bodies_[row];
         FreeVelocity& free = free_[row];
         if (mark_if_wild(row)) {
-            integrate_wild(gravity, substep == 0, row);
+            integrate_wild(gravity, is_first, row);
             continue;
         }
         for (int axis = 0; axis < 3; ++axis) {
             const std::int32_t linear_change =
-                substep == 0 ? 0 : raw_subtract(body.linear[axis], free.linear[axis]);
+                is_first ? 0 : raw_subtract(body.linear[axis], free.linear[axis]);
             const std::int32_t angular_change =
-                substep == 0 ? 0 : raw_subtract(body.angular[axis], free.angular[axis]);
+                is_first ? 0 : raw_subtract(body.angular[axis], free.angular[axis]);
             free.linear[axis] = raw_add(body.linear[axis], gravity[axis]);
             free.angular[axis] = body.angular[axis];
             body.linear[axis] = raw_add(free.linear[axis], linear_change);
@@ -229,17 +239,20 @@ void SolverBodies::integrate_positions() {
     for (const BodyRow row : dynamic_rows_) {
         SolverBody& body = bodies_[row];
         Course& course = courses_[row];
-        const std::int32_t linear_max = course.linear_speed_max;
-        const std::int32_t angular_max = course.angular_speed_max;
+        const bool is_calm =
+            is_within(body.linear, std::min(course.linear_speed_max, kCalmMax - 1)) &&
+            is_within(body.angular, std::min(course.angular_speed_max, kCalmMax - 1));
+        if (!is_calm) {
+            hold_within(body.linear, course.linear_speed_max);
+            hold_within(body.angular, course.angular_speed_max);
+            mark_if_wild(row);
+        }
         for (int axis = 0; axis < 3; ++axis) {
-            body.linear[axis] = std::clamp(body.linear[axis], -linear_max, linear_max);
-            body.angular[axis] = std::clamp(body.angular[axis], -angular_max, angular_max);
             body.linear_moved[axis] = body.linear[axis];
             body.angular_moved[axis] = body.angular[axis];
             course.travel.linear[axis] += body.linear[axis];
             course.travel.angular[axis] += body.angular[axis];
         }
-        mark_if_wild(row);
     }
 }
 

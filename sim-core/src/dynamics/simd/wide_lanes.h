@@ -136,7 +136,7 @@ struct WideLanes {
         return interleave(floor_root(sum.even), floor_root(sum.odd));
     }
 
-    static void clamp_to_cone(Vector& first, Vector& second, Vector limit) {
+    [[gnu::always_inline]] static void clamp_to_cone(Vector& first, Vector& second, Vector limit) {
         const Vector least = set(-std::numeric_limits<std::int32_t>::max());
         first = maximum(first, least);
         second = maximum(second, least);
