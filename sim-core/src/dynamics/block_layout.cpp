@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace lockwind {
 
@@ -13,6 +14,15 @@ namespace {
 
 constexpr std::uint64_t kDynamicMask = (std::uint64_t{1} << kDynamicColours) - 1;
 constexpr auto kDynamic = static_cast<std::uint8_t>(BodyMode::dynamic);
+constexpr auto kFixed = static_cast<std::uint8_t>(BodyMode::fixed);
+
+/// Of a colour's contacts: by points, and the central ones.
+constexpr std::uint32_t kClasses = kBlockPoints + 1;
+
+/// The lanes up to the end of the block in which `lanes` ends.
+constexpr std::uint32_t whole_blocks(std::uint32_t lanes) {
+    return (lanes + kBlockLanes - 1) / kBlockLanes * kBlockLanes;
+}
 
 /// Damaged rows must not lead outside the tables.
 bool is_solvable(const Pair& pair, const DynamicsTables& tables) {
@@ -20,7 +30,15 @@ bool is_solvable(const Pair& pair, const DynamicsTables& tables) {
            pair.row_b < tables.motion.count() && pair.manifold < tables.manifolds.count();
 }
 
+bool is_round(const BodyProperties& body) {
+    return body.shape == static_cast<std::uint8_t>(ShapeType::sphere);
+}
+
 } // namespace
+
+bool is_central(const BodyProperties& a, const BodyProperties& b) {
+    return (is_round(a) || a.mode == kFixed) && (is_round(b) || b.mode == kFixed);
+}
 
 Colouring::Colouring(std::uint32_t body_capacity, std::uint32_t pair_capacity)
     : used_(body_capacity) {
@@ -55,35 +73,40 @@ void Colouring::run(const DynamicsTables& tables, const Activity& activity) {
             used_[pair.row_a] |= bit;
             used_[pair.row_b] |= bit;
         }
-        contacts_.push_back({index, static_cast<std::uint8_t>(colour), pair.point_count});
+        contacts_.push_back({index,
+                             static_cast<std::uint8_t>(colour),
+                             pair.point_count,
+                             pair.point_count == 1 && is_central(a, b)});
     }
 }
 
 BlockLayout::BlockLayout(std::uint32_t manifold_capacity)
-    : blocks_(manifold_capacity / kBlockLanes + kColours + 1), inputs_(blocks_.size()) {}
+    : blocks_(manifold_capacity / kBlockLanes + 2 * (kColours + 1)), inputs_(blocks_.size()) {}
 
 void BlockLayout::run(const DynamicsTables& tables, std::span<const ColouredContact> contacts) {
-    std::uint32_t place[(kColours + 1) * kBlockPoints] = {};
+    std::uint32_t place[(kColours + 1) * kClasses] = {};
     const auto class_of = [](const ColouredContact& contact) {
-        return contact.colour * kBlockPoints + kBlockPoints - contact.point_count;
+        return contact.colour * kClasses +
+               (contact.is_central ? kClasses - 1 : kBlockPoints - contact.point_count);
     };
     for (const ColouredContact& contact : contacts) {
         ++place[class_of(contact)];
     }
-    // Counts become places in the colour's row of lanes.
-    std::uint32_t first_block[kColours + 1] = {};
-    count_ = 0;
+    // Counts become the places of their first lanes.
+    std::uint32_t end = 0;
     for (std::uint32_t colour = 0; colour <= kColours; ++colour) {
-        first_block[colour] = count_;
-        std::uint32_t sum = 0;
-        for (std::uint32_t points = 0; points < kBlockPoints; ++points) {
-            std::uint32_t& entry = place[colour * kBlockPoints + points];
-            sum += entry;
-            entry = sum - entry;
+        if (colour == kColours) {
+            overflow_first_ = end / kBlockLanes;
         }
-        count_ += (sum + kBlockLanes - 1) / kBlockLanes;
+        for (std::uint32_t entry = 0; entry < kClasses; ++entry) {
+            if (entry == kClasses - 1) {
+                end = whole_blocks(end);
+            }
+            end += std::exchange(place[colour * kClasses + entry], end);
+        }
+        end = whole_blocks(end);
     }
-    overflow_first_ = first_block[kColours];
+    count_ = end / kBlockLanes;
     for (ContactBlock& block : blocks()) {
         block.lane_count = 0;
         block.point_count_max = 0;
@@ -92,7 +115,8 @@ void BlockLayout::run(const DynamicsTables& tables, std::span<const ColouredCont
         const Pair& pair = tables.pairs[contact.pair];
         const std::uint32_t index = place[class_of(contact)]++;
         const std::uint32_t lane = index % kBlockLanes;
-        ContactBlock& block = blocks_[first_block[contact.colour] + index / kBlockLanes];
+        ContactBlock& block = blocks_[index / kBlockLanes];
+        block.is_central = contact.is_central;
         block.row_a[lane] = pair.row_a;
         block.row_b[lane] = pair.row_b;
         block.pair[lane] = contact.pair;

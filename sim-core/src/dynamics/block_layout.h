@@ -16,11 +16,16 @@ namespace lockwind {
 inline constexpr std::uint32_t kDynamicColours = 48;
 inline constexpr std::uint32_t kColours = 64;
 
+/// Whether the contact's normal passes through the centre of each of its bodies that can turn, so
+/// that its force turns none.
+bool is_central(const BodyProperties& a, const BodyProperties& b);
+
 /// A touching pair and its colour; kColours for the overflow.
 struct ColouredContact {
     std::uint32_t pair;
     std::uint8_t colour;
     std::uint8_t point_count;
+    bool is_central;
 };
 
 /// Colours touching pairs greedily in pair order, so that no two of a colour share a dynamic body.
@@ -37,7 +42,7 @@ private:
 };
 
 /// Blocks of eight contacts in solving order: by colour, then points (most first, so that lanes
-/// have equal work), then pair.
+/// have equal work), then pair. Central contacts come last, and have blocks of their own.
 class BlockLayout {
 public:
     explicit BlockLayout(std::uint32_t manifold_capacity);

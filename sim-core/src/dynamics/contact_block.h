@@ -70,6 +70,7 @@ struct alignas(64) ContactBlock {
     Lanes<std::int32_t> point_count;
     int lane_count;               // lanes in use, from 0
     std::int32_t point_count_max; // of its lanes
+    bool is_central;              // of all or none of its lanes: see is_central()
 
     Vector3 normal; // Q3.28, like all below
     Vector3 tangent[2];

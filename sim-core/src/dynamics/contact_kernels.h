@@ -32,6 +32,11 @@ struct ContactKernels {
 /// Calls visit(solver) for the lanes from `first`, with the solver of their number of points.
 template <class L, bool kHolds, class Visit>
 void visit_lanes(ContactBlock& block, SolverBody* bodies, int first, Visit&& visit) {
+    if (block.is_central) {
+        BlockSolver<L, 1, kHolds, true> solver(block, bodies, first);
+        visit(solver);
+        return;
+    }
     switch (L::kWidth == 1 ? block.point_count[first] : block.point_count_max) {
     case 1: {
         BlockSolver<L, 1, kHolds> solver(block, bodies, first);

@@ -49,9 +49,11 @@ public:
             return;
         }
         make_axes();
-        LOCKWIND_UNROLL
-        for (std::uint32_t point = 0; point < points_; ++point) {
-            make_normal_row(point);
+        if (!block_.is_central) {
+            LOCKWIND_UNROLL
+            for (std::uint32_t point = 0; point < points_; ++point) {
+                make_normal_row(point);
+            }
         }
         // Contacts of one point have their friction there, and resist no twist.
         const bool has_patch = block_.point_count_max > 1;

@@ -37,9 +37,12 @@ struct alignas(64) PointSpeeds {
 
 /// The passes over one block's lanes from `first`, for contacts of kPoints points; in wider lanes,
 /// contacts that have fewer bear null rows. kHolds: contacts of wild bodies are held within the
-/// formats where many forces together might leave them.
-template <class L, std::uint32_t kPoints, bool kHolds>
+/// formats where many forces together might leave them. kCentral: normal forces turn no body; their
+/// rows are (-n, 0, n, 0), with a mass of one, and are not read.
+template <class L, std::uint32_t kPoints, bool kHolds, bool kCentral = false>
 class BlockSolver {
+    static_assert(!kCentral || kPoints == 1);
+
 public:
     using Vector = typename L::Vector;
     using Wide = typename L::Wide;
@@ -65,7 +68,7 @@ public:
 
     /// Normal rows with their soft bias.
     [[gnu::always_inline]] void solve() {
-        read_velocities();
+        read_velocities<kTurns>();
         const Wide along = speed_along(linear_);
         Vector applied[kPoints];
         LOCKWIND_UNROLL
@@ -79,13 +82,13 @@ public:
                 L::maximum(scale(separation, factor(block_.bias_rate)), L::set(-kPushOutSpeedMax));
             const Vector pressed = L::add(scale(v, factor(block_.mass_scale)), bias);
             const Vector lost =
-                L::add(scale(L::select_positive(separation, open, pressed), factor(p.row.mass)),
+                L::add(answer(L::select_positive(separation, open, pressed), p.row),
                        L::select_positive(
                            separation, L::set(0), scale(old, factor(block_.impulse_scale))));
             applied[point] = accumulate(point, old, lost);
         }
         apply_normal(applied);
-        write_velocities();
+        write_velocities<kTurns>();
     }
 
     /// After the position step: moves the separations on, removes what the bias added to the
@@ -111,8 +114,7 @@ public:
             L::store(p.separation + first_, separation);
             const Vector old = lane(p.impulse);
             const Vector v = coupled_speed(speed_at(point, along, angular_), applied, point);
-            const Vector lost =
-                scale(L::add(v, L::maximum(separation, L::set(0))), factor(p.row.mass));
+            const Vector lost = answer(L::add(v, L::maximum(separation, L::set(0))), p.row);
             applied[point] = accumulate(point, old, lost);
             const Vector now = L::add(old, applied[point]);
             load = L::add(load, now);
@@ -147,7 +149,7 @@ public:
             speed_at(static_cast<std::uint32_t>(point), speed_along(linear_), angular_);
         const std::int32_t missing = held(
             L::subtract(speed, std::clamp(target, -kSeparationMax, kSeparationMax)), kRowSpeedMax);
-        const std::int32_t lost = scale(missing, factor(block_.point[point].row.mass));
+        const std::int32_t lost = answer(missing, block_.point[point].row);
         std::int32_t applied[kPoints] = {};
         applied[point] = L::subtract(L::maximum(L::subtract(carried, lost), 0), carried);
         apply_normal(applied);
@@ -157,6 +159,8 @@ public:
 
 private:
     using Factor = typename L::Factor;
+    /// Whether normal rows need the angular velocities; what holds them holds all at once.
+    static constexpr bool kTurns = !kCentral || kHolds;
 
     struct Velocities {
         Vector a[4]; // xyz and the row's filling
@@ -175,6 +179,15 @@ private:
     template <class Coefficient>
     static Vector scale(Vector velocity, const Coefficient& coefficient) {
         return L::template multiply<kCoefficientFraction>(velocity, coefficient);
+    }
+
+    /// A normal row's impulse against a speed.
+    [[gnu::always_inline]] Vector answer(Vector speed, const ContactBlock::Row& row) const {
+        if constexpr (kCentral) {
+            return speed;
+        } else {
+            return scale(speed, factor(row.mass));
+        }
     }
 
     /// Positive where one of the two bodies is wild.
@@ -215,15 +228,18 @@ private:
     static Wide start() { return L::template start<kCoefficientFraction>(); }
     static Vector finish(Wide sum) { return L::template round<kCoefficientFraction>(sum); }
 
+    template <bool kAngular = true>
     [[gnu::always_inline]] void read_velocities() {
         L::gather_quad(
             first_, [&](int lane) { return body_a(lane).linear; }, linear_.a);
         L::gather_quad(
             first_, [&](int lane) { return body_b(lane).linear; }, linear_.b);
-        L::gather_quad(
-            first_, [&](int lane) { return body_a(lane).angular; }, angular_.a);
-        L::gather_quad(
-            first_, [&](int lane) { return body_b(lane).angular; }, angular_.b);
+        if constexpr (kAngular) {
+            L::gather_quad(
+                first_, [&](int lane) { return body_a(lane).angular; }, angular_.a);
+            L::gather_quad(
+                first_, [&](int lane) { return body_b(lane).angular; }, angular_.b);
+        }
         if constexpr (kHolds) {
             hold_velocities();
         }
@@ -247,15 +263,18 @@ private:
         linear_.b[kWildEntry] =
             L::select_positive(lane(block_.share_b), is_wild, linear_.b[kWildEntry]);
     }
+    template <bool kAngular = true>
     [[gnu::always_inline]] void write_velocities() {
         if constexpr (kHolds) {
             hold_velocities();
             pass_wildness_on();
         }
         L::scatter_quad(first_, linear_.a, [&](int lane) { return body_a(lane).linear; });
-        L::scatter_quad(first_, angular_.a, [&](int lane) { return body_a(lane).angular; });
         L::scatter_quad(first_, linear_.b, [&](int lane) { return body_b(lane).linear; });
-        L::scatter_quad(first_, angular_.b, [&](int lane) { return body_b(lane).angular; });
+        if constexpr (kAngular) {
+            L::scatter_quad(first_, angular_.a, [&](int lane) { return body_a(lane).angular; });
+            L::scatter_quad(first_, angular_.b, [&](int lane) { return body_b(lane).angular; });
+        }
     }
 
     /// The linear velocities' part of J v, the same of all points.
@@ -271,11 +290,13 @@ private:
     /// A point's separating speed J v, held to kRowSpeedMax.
     [[gnu::always_inline]] Vector
     speed_at(std::uint32_t point, Wide along, const Velocities& angular) const {
-        const ContactBlock::Row& row = block_.point[point].row;
-        LOCKWIND_UNROLL
-        for (int axis = 0; axis < 3; ++axis) {
-            along = L::add_product(along, angular.a[axis], factor(row.jacobian_a[axis]));
-            along = L::add_product(along, angular.b[axis], factor(row.jacobian_b[axis]));
+        if constexpr (!kCentral) {
+            const ContactBlock::Row& row = block_.point[point].row;
+            LOCKWIND_UNROLL
+            for (int axis = 0; axis < 3; ++axis) {
+                along = L::add_product(along, angular.a[axis], factor(row.jacobian_a[axis]));
+                along = L::add_product(along, angular.b[axis], factor(row.jacobian_b[axis]));
+            }
         }
         return held_finish(along);
     }
@@ -285,10 +306,12 @@ private:
             first_, [&](int lane) { return body_a(lane).linear_moved; }, linear.a);
         L::gather_quad(
             first_, [&](int lane) { return body_b(lane).linear_moved; }, linear.b);
-        L::gather_quad(
-            first_, [&](int lane) { return body_a(lane).angular_moved; }, angular.a);
-        L::gather_quad(
-            first_, [&](int lane) { return body_b(lane).angular_moved; }, angular.b);
+        if constexpr (!kCentral) {
+            L::gather_quad(
+                first_, [&](int lane) { return body_a(lane).angular_moved; }, angular.a);
+            L::gather_quad(
+                first_, [&](int lane) { return body_b(lane).angular_moved; }, angular.b);
+        }
     }
 
     /// A point's speed after what the points before it applied.
@@ -387,6 +410,13 @@ private:
                 out[axis] = scale(part, factor(block_.normal[axis]));
             }
         });
+        if constexpr (!kCentral) {
+            turn(impulse);
+        }
+    }
+
+    /// The angular part of normal impulses.
+    [[gnu::always_inline]] void turn(const Vector (&impulse)[kPoints]) {
         LOCKWIND_UNROLL
         for (int axis = 0; axis < 3; ++axis) {
             Wide sum_a = start();

@@ -48,10 +48,11 @@ void read_terms(const BodyFrame& frame, const BodyProperties& body, BodyTerms& t
     }
 }
 
-/// Whether no component leaves +-most. \pre most < 2^30
+/// Whether no component leaves +-most. A component + most is, as unsigned, above 2 most where the
+/// component is not within; so one comparison answers for all. \pre most < 2^30
 bool is_within(const std::int32_t velocity[3], std::int32_t most) {
     const auto bound = static_cast<std::uint32_t>(most);
-    std::uint32_t largest = 0; // of what is no more than 2 bound within
+    std::uint32_t largest = 0;
     for (int axis = 0; axis < 3; ++axis) {
         largest = std::max(largest, static_cast<std::uint32_t>(velocity[axis]) + bound);
     }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr auto kDynamicMode = static_cast<std::uint8_t>(BodyMode::dynamic);
 
-/// Tables with made-up touching pairs: only modes and pairs matter.
+/// Tables with made-up touching pairs: only modes, shapes and pairs matter.
 class PairTables {
 public:
     PairTables(std::uint32_t bodies, std::uint32_t pairs, std::uint32_t seed) : bench_({}, bodies) {
@@ -22,6 +22,8 @@ public:
         state.sleep_count = bodies;
         for (BodyProperties& body : state.properties) {
             body.mode = random() % 6 == 0 ? static_cast<std::uint8_t>(random() % 2) : kDynamicMode;
+            body.shape =
+                static_cast<std::uint8_t>(random() % 2 == 0 ? ShapeType::sphere : ShapeType::box);
         }
         state.properties[1].mode = kDynamicMode;
         std::set<std::pair<BodyRow, BodyRow>> rows;
@@ -125,7 +127,7 @@ TEST(Colouring, IsTheGreedyOneOfPairOrder) {
     }
 }
 
-TEST(BlockLayout, HoldsEveryContactOnceByColourPointsAndPair) {
+TEST(BlockLayout, HoldsEveryContactOnceByColourWorkAndPair) {
     PairTables made(120, 700, 5);
     const DynamicsTables tables = made.tables();
     Colouring colouring(120, made.pair_capacity());
@@ -133,9 +135,17 @@ TEST(BlockLayout, HoldsEveryContactOnceByColourPointsAndPair) {
     BlockLayout layout(made.manifold_capacity());
     layout.run(tables, colouring.contacts());
     std::map<std::uint32_t, std::uint8_t> colour_of;
+    std::uint32_t central = 0;
     for (const ColouredContact& contact : colouring.contacts()) {
         colour_of[contact.pair] = contact.colour;
+        const Pair& pair = tables.pairs[contact.pair];
+        const bool is_central_one =
+            contact.point_count == 1 &&
+            lockwind::is_central(tables.properties[pair.row_a], tables.properties[pair.row_b]);
+        EXPECT_EQ(contact.is_central, is_central_one);
+        central += is_central_one ? 1 : 0;
     }
+    EXPECT_GT(central, 20U);
     using Key = std::array<std::uint32_t, 3>;
     std::vector<Key> order;
     std::uint32_t index = 0;
@@ -148,13 +158,37 @@ TEST(BlockLayout, HoldsEveryContactOnceByColourPointsAndPair) {
             EXPECT_EQ(index >= layout.overflow_first(), colour == kColours);
             EXPECT_LE(block.point_count[lane], block.point_count_max);
             const auto points = static_cast<std::uint32_t>(block.point_count[lane]);
-            order.push_back({colour, kBlockPoints - points, block.pair[lane]});
+            const std::uint32_t light = block.is_central ? kBlockPoints : kBlockPoints - points;
+            central -= block.is_central ? 1 : 0;
+            order.push_back({colour, light, block.pair[lane]});
         }
         ++index;
     }
+    EXPECT_EQ(central, 0U) << "all in blocks of their own, and nothing else there";
     EXPECT_EQ(order.size(), colouring.contacts().size());
     EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
     EXPECT_EQ(std::set<Key>(order.begin(), order.end()).size(), order.size());
+}
+
+TEST(IsCentral, OfSpheresAndWhatDoesNotTurn) {
+    const auto body = [](ShapeType shape, BodyMode mode) {
+        BodyProperties made{};
+        made.shape = static_cast<std::uint8_t>(shape);
+        made.mode = static_cast<std::uint8_t>(mode);
+        return made;
+    };
+    const BodyProperties ball = body(ShapeType::sphere, BodyMode::dynamic);
+    const BodyProperties moved = body(ShapeType::sphere, BodyMode::kinematic);
+    const BodyProperties floor = body(ShapeType::plane, BodyMode::fixed);
+    const BodyProperties lift = body(ShapeType::box, BodyMode::kinematic);
+    const BodyProperties crate = body(ShapeType::box, BodyMode::dynamic);
+    EXPECT_TRUE(is_central(ball, ball));
+    EXPECT_TRUE(is_central(ball, floor));
+    EXPECT_TRUE(is_central(floor, ball));
+    EXPECT_TRUE(is_central(moved, ball));
+    EXPECT_FALSE(is_central(ball, crate));
+    EXPECT_FALSE(is_central(lift, ball)) << "it turns, and carries along what it touches";
+    EXPECT_FALSE(is_central(crate, floor));
 }
 
 TEST(BlockLayout, ContactsBeyondTheColoursAreStillSolved) {

@@ -83,7 +83,9 @@ void keep_promises(ContactBlock& block, Dice& dice) {
 void draw_block(ContactBlock& block, Dice& dice) {
     block.lane_count = kBlockLanes;
     block.point_count_max = 0;
-    const auto most = static_cast<std::uint64_t>(between(dice, 1, 4));
+    block.is_central = dice.chance(250);
+    const auto most =
+        block.is_central ? std::uint64_t{1} : static_cast<std::uint64_t>(between(dice, 1, 4));
     for (int lane = 0; lane < kBlockLanes; ++lane) {
         block.row_a[lane] = static_cast<BodyRow>(2 * lane);
         block.row_b[lane] = static_cast<BodyRow>(2 * lane + 1);
@@ -194,6 +196,36 @@ TEST_P(SimdTest, PassesOfRandomBlocksAreThoseOfScalarLanes) {
     }
     EXPECT_GT(cones, 1000);
     EXPECT_GT(approaching, 1000);
+}
+
+TEST_P(SimdTest, CentralContactsAreThoseWhoseNormalForcesTurnNothing) {
+    const ContactKernels kernels = contact_kernels(GetParam());
+    Dice dice(13);
+    auto block = std::make_unique<ContactBlock>();
+    auto other = std::make_unique<ContactBlock>();
+    int central = 0;
+    for (int trial = 0; trial < 2000; ++trial) {
+        draw_block(*block, dice);
+        if (!block->is_central) {
+            continue;
+        }
+        ++central;
+        *other = *block;
+        other->is_central = false;
+        other->point[0].row = {};
+        std::fill_n(other->point[0].row.mass, kBlockLanes, kCoefficientOne);
+        Bodies bodies{};
+        draw_bodies(bodies, dice);
+        Bodies others = bodies;
+        const auto passes = trial % 2 == 0 ? &ContactKernels::calm : &ContactKernels::wild;
+        for (const auto pass : {&Passes::warm_start, &Passes::solve, &Passes::relax}) {
+            (kernels.*passes.*pass)({block.get(), 1}, bodies.data());
+            (kernels.*passes.*pass)({other.get(), 1}, others.data());
+            ASSERT_NO_FATAL_FAILURE(expect_same(*block, *other)) << "trial " << trial;
+            ASSERT_EQ(std::memcmp(bodies.data(), others.data(), sizeof bodies), 0) << trial;
+        }
+    }
+    EXPECT_GT(central, 300);
 }
 
 TEST_P(SimdTest, WildPassesGiveContactsWithoutAWildBodyTheSameBits) {
