@@ -26,11 +26,12 @@ random_rod(Draws& draws, double half_length, double slenderness, WorldDefinition
         break;
     default: {
         HullDefinition prism;
+        const double radius = std::max(0.013, thick); // faces at least 2 cm apart
         for (int point = 0; point < 12; ++point) {
             const double angle = point * std::numbers::pi / 3;
-            prism.points.push_back(vec(thick * std::cos(angle) * draws.uniform(0.95, 1.05),
+            prism.points.push_back(vec(radius * std::cos(angle) * draws.uniform(0.95, 1.05),
                                        (point < 6 ? -0.9 : 0.9) * half_length,
-                                       thick * std::sin(angle) * draws.uniform(0.95, 1.05)));
+                                       radius * std::sin(angle) * draws.uniform(0.95, 1.05)));
         }
         shape.type = ShapeType::hull;
         shape.hull = static_cast<std::uint32_t>(scene.hulls.size());
