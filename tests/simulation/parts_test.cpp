@@ -186,7 +186,7 @@ TEST(CompoundBody, DumbbellTurnsByItsClosedFormInertia) {
     // It precesses about L by |L| / I_across: after one turn its line lies as at first.
     const double period = 2 * M_PI * across / length(momentum);
     const int ticks = static_cast<int>(std::lround(period * 60));
-    step_idle(*world, static_cast<std::uint32_t>(ticks));
+    step_idle(*world, ticks);
     const BodyView after = world->body_at(0);
     const Vector line = turned(after.orientation, {1, 0, 0});
     const double angle = (ticks / 60.0 - period) * length(momentum) / across;
@@ -215,7 +215,7 @@ TEST(CompoundBody, RestsOnItsParts) {
     EXPECT_NEAR(to_double(view_of(*world, 4).position.y), 1.3, 0.02);
     EXPECT_NEAR(to_double(view_of(*world, 5).position.y), 0.3, 0.01);
     EXPECT_NEAR(to_double(view_of(*world, 5).position.x), 5, 0.01);
-    for (const BodyId id : {2, 3, 4, 5}) {
+    for (const BodyId id : {BodyId{2}, BodyId{3}, BodyId{4}, BodyId{5}}) {
         EXPECT_TRUE(view_of(*world, id).asleep) << id;
     }
 }
