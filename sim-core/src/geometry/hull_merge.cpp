@@ -180,7 +180,11 @@ void tidy(HullSurface& surface) {
         }
         std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
     }
-    std::sort(surface.faces.begin(), surface.faces.end());
+    // Not by operator<: libstdc++ 12 compares vectors of unsigned numbers wrongly on big-endian
+    // machines (GCC bug 113960).
+    std::sort(surface.faces.begin(), surface.faces.end(), [](const Face& a, const Face& b) {
+        return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+    });
 }
 
 } // namespace
