@@ -118,8 +118,10 @@ public:
             applied[point] = accumulate(point, old, lost);
             const Vector now = L::add(old, applied[point]);
             load = L::add(load, now);
-            twist_load =
-                L::add(twist_load, loaded(scale(held(now, kLeverLoadMax), factor(p.lever))));
+            if constexpr (kPoints > 1) { // one point has no lever
+                twist_load =
+                    L::add(twist_load, loaded(scale(held(now, kLeverLoadMax), factor(p.lever))));
+            }
         }
         apply_normal(applied);
         const Factor friction = factor(block_.friction);

@@ -70,7 +70,9 @@ void keep_promises(ContactBlock& block, Dice& dice) {
             const bool exists = index < block.point_count[lane];
             point.impulse[lane] = exists ? between(dice, 0, block.impulse_max[lane]) : 0;
             point.row.mass[lane] = exists ? point.row.mass[lane] : 0;
-            const bool twists = exists && block.point_count[lane] > 1;
+            // Of blocks of single points nobody writes it: it is what an earlier block left.
+            const bool twists =
+                block.point_count_max == 1 || (exists && block.point_count[lane] > 1);
             point.lever[lane] = twists ? between(dice, 0, 7 << kCoefficientFraction) : 0;
         }
         if (block.point_count[lane] == 1) {
