@@ -2,6 +2,7 @@
 
 #include "dynamics/pairing.h"
 
+#include "lockwind/assert.h"
 #include "lockwind/world_definition.h"
 
 #include <algorithm>
@@ -107,6 +108,7 @@ void BlockLayout::run(const DynamicsTables& tables, std::span<const ColouredCont
         end = whole_blocks(end);
     }
     count_ = end / kBlockLanes;
+    LOCKWIND_ASSERT(count_ <= blocks_.size());
     for (ContactBlock& block : blocks()) {
         block.lane_count = 0;
         block.point_count_max = 0;

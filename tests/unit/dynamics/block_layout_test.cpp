@@ -128,7 +128,7 @@ TEST(Colouring, IsTheGreedyOneOfPairOrder) {
 }
 
 TEST(BlockLayout, HoldsEveryContactOnceByColourWorkAndPair) {
-    PairTables made(120, 700, 5);
+    PairTables made(120, 700, 6);
     const DynamicsTables tables = made.tables();
     Colouring colouring(120, made.pair_capacity());
     colouring.run(tables, made.activity());
@@ -136,6 +136,7 @@ TEST(BlockLayout, HoldsEveryContactOnceByColourWorkAndPair) {
     layout.run(tables, colouring.contacts());
     std::map<std::uint32_t, std::uint8_t> colour_of;
     std::uint32_t central = 0;
+    std::uint32_t central_overflow = 0;
     for (const ColouredContact& contact : colouring.contacts()) {
         colour_of[contact.pair] = contact.colour;
         const Pair& pair = tables.pairs[contact.pair];
@@ -144,8 +145,10 @@ TEST(BlockLayout, HoldsEveryContactOnceByColourWorkAndPair) {
             lockwind::is_central(tables.properties[pair.row_a], tables.properties[pair.row_b]);
         EXPECT_EQ(contact.is_central, is_central_one);
         central += is_central_one ? 1 : 0;
+        central_overflow += is_central_one && contact.colour == kColours ? 1 : 0;
     }
     EXPECT_GT(central, 20U);
+    EXPECT_GT(central_overflow, 0U);
     using Key = std::array<std::uint32_t, 3>;
     std::vector<Key> order;
     std::uint32_t index = 0;
@@ -168,6 +171,27 @@ TEST(BlockLayout, HoldsEveryContactOnceByColourWorkAndPair) {
     EXPECT_EQ(order.size(), colouring.contacts().size());
     EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
     EXPECT_EQ(std::set<Key>(order.begin(), order.end()).size(), order.size());
+}
+
+/// A block for each kind of contact in each colour is the most that contacts can be spread over.
+TEST(BlockLayout, HasRoomForBothKindsInEveryColour) {
+    constexpr std::uint32_t kContacts = 2 * (kColours + 1);
+    PairTables made(60, kContacts, 1);
+    const DynamicsTables tables = made.tables();
+    std::vector<ColouredContact> contacts;
+    for (std::uint32_t index = 0; index < kContacts; ++index) {
+        contacts.push_back({index, static_cast<std::uint8_t>(index / 2), 1, index % 2 == 0});
+    }
+    BlockLayout layout(kContacts);
+    layout.run(tables, contacts);
+    ASSERT_EQ(layout.blocks().size(), kContacts);
+    EXPECT_EQ(layout.overflow_first(), kContacts - 2);
+    std::uint32_t central = 0;
+    for (const ContactBlock& block : layout.blocks()) {
+        EXPECT_EQ(block.lane_count, 1);
+        central += block.is_central ? 1 : 0;
+    }
+    EXPECT_EQ(central, kContacts / 2);
 }
 
 TEST(IsCentral, OfSpheresAndWhatDoesNotTurn) {
