@@ -68,6 +68,40 @@ bool turns_freely(const BodyProperties& body,
     return speed * std::min(length_bound(turn), kTurnMax) >= kTurnMax / 2;
 }
 
+/// Rounded, ties away from zero: what is cut off towards zero a tick slows a spin down.
+std::int64_t round_quotient(std::int64_t numerator, std::int64_t divisor) {
+    const std::int64_t half = numerator < 0 ? -(divisor / 2) : divisor / 2;
+    return (numerator + half) / divisor;
+}
+
+/// Rounds a change of velocity from Q.24 to Q.20 so that it neither adds nor takes along
+/// `gradient`, as far as one unit more or less of each component allows: a minute's roundings to
+/// the nearest would add up.
+void round_change(const std::int64_t gradient[3], std::int64_t change[3]) {
+    constexpr std::int64_t kUnit = 16;
+    std::int64_t excess = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::int64_t exact = change[axis];
+        change[axis] = round_quotient(exact, kUnit);
+        excess += (change[axis] * kUnit - exact) * gradient[axis];
+    }
+    // The component that matters most first: those after it correct finer.
+    int order[3] = {0, 1, 2};
+    std::sort(order, order + 3, [&](int a, int b) {
+        const std::int64_t of_a = magnitude(gradient[a]);
+        const std::int64_t of_b = magnitude(gradient[b]);
+        return of_a > of_b || (of_a == of_b && a < b);
+    });
+    for (const int axis : order) {
+        const std::int64_t step = (excess < 0) == (gradient[axis] < 0) ? -1 : 1;
+        const std::int64_t corrected = excess + step * kUnit * gradient[axis];
+        if (magnitude(corrected) < magnitude(excess)) {
+            change[axis] += step;
+            excess = corrected;
+        }
+    }
+}
+
 void turn_freely(const StepConstants& constants,
                  const std::int64_t travel[3],
                  const BodyProperties& body,
@@ -91,19 +125,27 @@ void turn_freely(const StepConstants& constants,
     std::int64_t local[3];
     inverse_rotate(rotation, before, local);
     for (int axis = 0; axis < 3; ++axis) {
-        turn.momentum[axis] = local[axis] * turn.inertia_min / turn.inertia[axis];
+        turn.momentum[axis] = round_quotient(local[axis] * turn.inertia_min, turn.inertia[axis]);
     }
     turn.run();
     normalize_quaternion(turn.orientation, motion.orientation);
     for (int axis = 0; axis < 3; ++axis) {
-        local[axis] = turn.momentum[axis] * turn.inertia[axis] / turn.inertia_min;
+        local[axis] = round_quotient(turn.momentum[axis] * turn.inertia[axis], turn.inertia_min);
     }
     rotation_matrix(motion.orientation, rotation);
-    std::int64_t after[3];
-    rotate(rotation, local, after);
+    std::int64_t change[3];
+    rotate(rotation, local, change);
+    // How the square of the momentum grows with the velocity.
+    std::int64_t gradient[3];
     for (int axis = 0; axis < 3; ++axis) {
-        motion.angular_velocity[axis] = raw_saturate<std::int32_t>(
-            motion.angular_velocity[axis] + round_shift(after[axis] - before[axis], 4));
+        change[axis] -= before[axis];
+        local[axis] = round_quotient(turn.momentum[axis] * turn.inertia_min, turn.inertia[axis]);
+    }
+    rotate(rotation, local, gradient);
+    round_change(gradient, change);
+    for (int axis = 0; axis < 3; ++axis) {
+        motion.angular_velocity[axis] =
+            raw_saturate<std::int32_t>(motion.angular_velocity[axis] + change[axis]);
     }
 }
 
