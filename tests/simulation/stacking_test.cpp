@@ -90,10 +90,11 @@ Stand stand(const WorldDefinition& scene, int ticks) {
     return stand;
 }
 
-/// At 2 mm in five minutes a unit box is at its edge after a day.
-void expect_no_creep(const Stand& stand) {
-    EXPECT_LT(stand.crept.largest, 0.002);
-    EXPECT_LT(stand.end.largest, stand.settled.largest + 0.002);
+/// What lies still goes nowhere by friction's roundings: Box3D's pyramid_210 moves by 0.05 mm in
+/// nine minutes. Columns sway a little longer before they rest.
+void expect_no_creep(const Stand& stand, double most = 0.0005) {
+    EXPECT_LT(stand.crept.largest, most);
+    EXPECT_LT(stand.end.largest, stand.settled.largest + most);
 }
 
 TEST(Standing, Pyramid210DriftsThreeCentimetresInTenSeconds) {
@@ -101,8 +102,8 @@ TEST(Standing, Pyramid210DriftsThreeCentimetresInTenSeconds) {
     ASSERT_TRUE(scene.ok()) << scene.error().message;
     const Stand stood = stand(scene.value(), long_tests() ? 10 * kTicksAMinute : 600);
     EXPECT_LE(stood.end.largest, long_tests() ? 0.04 : 0.035);
-    EXPECT_LE(stood.end.horizontal, 0.02);
-    expect_no_creep(stood);
+    EXPECT_NEAR(stood.end.horizontal, stood.settled.horizontal, 0.0002);
+    expect_no_creep(stood, long_tests() ? 0.0005 : 0.002); // it settles for ten seconds
 }
 
 TEST(Standing, PyramidOf36DoesNotCreepInTenMinutes) {

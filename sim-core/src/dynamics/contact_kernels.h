@@ -12,7 +12,7 @@ namespace lockwind {
 
 /// The solver's inner loops for one kind of lanes; every kind gives the same bits.
 struct ContactKernels {
-    using Pass = void (*)(std::span<ContactBlock> blocks, SolverBody* bodies);
+    using Pass = void (*)(std::span<ContactBlock> blocks, SolverBody* bodies, Halves halves);
     struct Passes {
         void (*read_speeds)(ContactBlock& block, SolverBody* bodies, PointSpeeds& out);
         Pass warm_start;
@@ -31,30 +31,30 @@ struct ContactKernels {
 
 /// Calls visit(solver) for the lanes from `first`, with the solver of their number of points.
 template <class L, bool kHolds, class Visit>
-void visit_lanes(ContactBlock& block, SolverBody* bodies, int first, Visit&& visit) {
+void visit_lanes(ContactBlock& block, SolverBody* bodies, int first, Halves halves, Visit&& visit) {
     if (block.is_central) {
-        BlockSolver<L, 1, kHolds, true> solver(block, bodies, first);
+        BlockSolver<L, 1, kHolds, true> solver(block, bodies, first, halves);
         visit(solver);
         return;
     }
     switch (L::kWidth == 1 ? block.point_count[first] : block.point_count_max) {
     case 1: {
-        BlockSolver<L, 1, kHolds> solver(block, bodies, first);
+        BlockSolver<L, 1, kHolds> solver(block, bodies, first, halves);
         visit(solver);
         break;
     }
     case 2: {
-        BlockSolver<L, 2, kHolds> solver(block, bodies, first);
+        BlockSolver<L, 2, kHolds> solver(block, bodies, first, halves);
         visit(solver);
         break;
     }
     case 3: {
-        BlockSolver<L, 3, kHolds> solver(block, bodies, first);
+        BlockSolver<L, 3, kHolds> solver(block, bodies, first, halves);
         visit(solver);
         break;
     }
     default: {
-        BlockSolver<L, 4, kHolds> solver(block, bodies, first);
+        BlockSolver<L, 4, kHolds> solver(block, bodies, first, halves);
         visit(solver);
         break;
     }
@@ -62,9 +62,9 @@ void visit_lanes(ContactBlock& block, SolverBody* bodies, int first, Visit&& vis
 }
 
 template <class L, bool kHolds, class Visit>
-void visit_block(ContactBlock& block, SolverBody* bodies, Visit&& visit) {
+void visit_block(ContactBlock& block, SolverBody* bodies, Halves halves, Visit&& visit) {
     for (int first = 0; first < block.lane_count; first += L::kWidth) {
-        visit_lanes<L, kHolds>(block, bodies, first, visit);
+        visit_lanes<L, kHolds>(block, bodies, first, halves, visit);
     }
 }
 
@@ -72,21 +72,23 @@ template <class L, bool kHolds>
 ContactKernels::Passes passes_of() {
     return {
         [](ContactBlock& block, SolverBody* bodies, PointSpeeds& out) {
-            visit_block<L, kHolds>(block, bodies, [&](auto& solver) { solver.read_speeds(out); });
+            visit_block<L, kHolds>(
+                block, bodies, Halves::up, [&](auto& solver) { solver.read_speeds(out); });
         },
-        [](std::span<ContactBlock> blocks, SolverBody* bodies) {
+        [](std::span<ContactBlock> blocks, SolverBody* bodies, Halves halves) {
             for (ContactBlock& block : blocks) {
-                visit_block<L, kHolds>(block, bodies, [](auto& solver) { solver.warm_start(); });
+                visit_block<L, kHolds>(
+                    block, bodies, halves, [](auto& solver) { solver.warm_start(); });
             }
         },
-        [](std::span<ContactBlock> blocks, SolverBody* bodies) {
+        [](std::span<ContactBlock> blocks, SolverBody* bodies, Halves halves) {
             for (ContactBlock& block : blocks) {
-                visit_block<L, kHolds>(block, bodies, [](auto& solver) { solver.solve(); });
+                visit_block<L, kHolds>(block, bodies, halves, [](auto& solver) { solver.solve(); });
             }
         },
-        [](std::span<ContactBlock> blocks, SolverBody* bodies) {
+        [](std::span<ContactBlock> blocks, SolverBody* bodies, Halves halves) {
             for (ContactBlock& block : blocks) {
-                visit_block<L, kHolds>(block, bodies, [](auto& solver) { solver.relax(); });
+                visit_block<L, kHolds>(block, bodies, halves, [](auto& solver) { solver.relax(); });
             }
         }};
 }

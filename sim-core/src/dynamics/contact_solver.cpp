@@ -301,15 +301,18 @@ void ContactSolver::note_impacts() {
     }
 }
 
-void ContactSolver::run(ContactKernels::Pass ContactKernels::Passes::*pass, SolverBodies& bodies) {
+void ContactSolver::run(ContactKernels::Pass ContactKernels::Passes::*pass,
+                        Halves halves,
+                        SolverBodies& bodies) {
     const auto passes = passes_for(bodies);
     const std::span<ContactBlock> blocks = layout_.blocks();
-    (kernels_.*passes.*pass)(blocks.first(layout_.overflow_first()), bodies.bodies());
-    (overflow_kernels_.*passes.*pass)(blocks.subspan(layout_.overflow_first()), bodies.bodies());
+    (kernels_.*passes.*pass)(blocks.first(layout_.overflow_first()), bodies.bodies(), halves);
+    (overflow_kernels_.*passes.*
+     pass)(blocks.subspan(layout_.overflow_first()), bodies.bodies(), halves);
 }
 
-void ContactSolver::relax(SolverBodies& bodies) {
-    run(&ContactKernels::Passes::relax, bodies);
+void ContactSolver::relax(Halves halves, SolverBodies& bodies) {
+    run(&ContactKernels::Passes::relax, halves, bodies);
     note_impacts();
 }
 
@@ -345,10 +348,11 @@ void ContactSolver::bounce(const DynamicsTables& tables, SolverBodies& bodies, I
         }
         const auto target = static_cast<std::int32_t>(
             -round_shift(restitution * impact.approach[point], kCoefficientFraction));
-        visit_lanes<ScalarLanes, true>(block, bodies.bodies(), impact.lane, [&](auto& solver) {
-            impact.impulse_max[point] +=
-                solver.reach_speed(point, target, impact.impulse_max[point]);
-        });
+        visit_lanes<ScalarLanes, true>(
+            block, bodies.bodies(), impact.lane, Halves::up, [&](auto& solver) {
+                impact.impulse_max[point] +=
+                    solver.reach_speed(point, target, impact.impulse_max[point]);
+            });
     }
 }
 

@@ -25,9 +25,13 @@ public:
                  const BodyFrames& frames,
                  const Activity& activity,
                  SolverBodies& bodies);
-    void warm_start(SolverBodies& bodies) { run(&ContactKernels::Passes::warm_start, bodies); }
-    void solve(SolverBodies& bodies) { run(&ContactKernels::Passes::solve, bodies); }
-    void relax(SolverBodies& bodies);
+    void warm_start(SolverBodies& bodies) {
+        run(&ContactKernels::Passes::warm_start, Halves::up, bodies);
+    }
+    void solve(Halves halves, SolverBodies& bodies) {
+        run(&ContactKernels::Passes::solve, halves, bodies);
+    }
+    void relax(Halves halves, SolverBodies& bodies);
     void write(const DynamicsTables& tables);
 
     /// Contacts that approached fast: they may bounce, and are hits.
@@ -54,7 +58,8 @@ private:
     void note_impacts();
     void bounce(const DynamicsTables& tables, SolverBodies& bodies, Impact& impact);
 
-    void run(ContactKernels::Pass ContactKernels::Passes::*pass, SolverBodies& bodies);
+    void
+    run(ContactKernels::Pass ContactKernels::Passes::*pass, Halves halves, SolverBodies& bodies);
 
     ContactKernels kernels_;
     ContactKernels overflow_kernels_; // scalar: bodies may meet twice in a block

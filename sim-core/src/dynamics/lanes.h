@@ -35,6 +35,11 @@ inline void clamp_to_cone(std::int32_t& first, std::int32_t& second, std::int32_
     second = static_cast<std::int32_t>(round_shift(second * scale, kCoefficientFraction));
 }
 
+/// Where a half between two units of a velocity goes. Bodies of equal masses share every other
+/// impulse in halves: if all went up, what lies still would creep down by a fraction of a unit in
+/// each substep, and no friction would notice. So they take turns.
+enum class Halves : std::int64_t { up = 0, down = 1 };
+
 /// The solver's kernels are templates over lanes: a vector of int32 and one of the int64 sums of
 /// their products. This is the scalar one and the oracle: WideLanes has the same members and gives
 /// the same bits, because every operation is exact integer arithmetic.
@@ -93,8 +98,8 @@ struct ScalarLanes {
     static Wide zero() { return 0; }
     /// A sum to which products are added, and which round<Shift> turns back into a vector.
     template <int Shift>
-    static Wide start() {
-        return std::int64_t{1} << (Shift - 1);
+    static Wide start(Halves halves = Halves::up) {
+        return (std::int64_t{1} << (Shift - 1)) - static_cast<std::int64_t>(halves);
     }
     static Wide add_product(Wide sum, Vector a, Vector b) {
         return raw_add(sum, std::int64_t{a} * b);

@@ -47,8 +47,9 @@ public:
     using Vector = typename L::Vector;
     using Wide = typename L::Wide;
 
-    BlockSolver(ContactBlock& block, SolverBody* bodies, int first)
-        : block_(block), bodies_(bodies), first_(first) {}
+    BlockSolver(ContactBlock& block, SolverBody* bodies, int first, Halves halves)
+        : block_(block), bodies_(bodies), first_(first),
+          half_(L::template start<kCoefficientFraction>(halves)) {}
 
     /// Applies the impulses that the contacts brought from the tick before.
     [[gnu::always_inline]] void warm_start() {
@@ -179,8 +180,8 @@ private:
         return L::load_factor(lanes + first_);
     }
     template <class Coefficient>
-    static Vector scale(Vector velocity, const Coefficient& coefficient) {
-        return L::template multiply<kCoefficientFraction>(velocity, coefficient);
+    Vector scale(Vector velocity, const Coefficient& coefficient) const {
+        return finish(L::add_product(start(), velocity, coefficient));
     }
 
     /// A normal row's impulse against a speed.
@@ -227,7 +228,7 @@ private:
         return held(scale(loaded(load), friction), kImpulseMax);
     }
     static Vector loaded(Vector load) { return L::minimum(load, L::set(kFrictionLoadMax)); }
-    static Wide start() { return L::template start<kCoefficientFraction>(); }
+    Wide start() const { return half_; }
     static Vector finish(Wide sum) { return L::template round<kCoefficientFraction>(sum); }
 
     template <bool kAngular = true>
@@ -437,7 +438,7 @@ private:
     [[gnu::always_inline]] void add_tangent(Vector first, Vector second) {
         const ContactBlock::Row& row_0 = block_.tangent_row[0];
         const ContactBlock::Row& row_1 = block_.tangent_row[1];
-        const auto sum_of = [](Vector x, const Factor& by_x, Vector y, const Factor& by_y) {
+        const auto sum_of = [this](Vector x, const Factor& by_x, Vector y, const Factor& by_y) {
             return finish(L::add_product(L::add_product(start(), x, by_x), y, by_y));
         };
         push([&](const Factor& share, Vector(&out)[3]) __attribute__((always_inline)) {
@@ -534,6 +535,7 @@ private:
     ContactBlock& block_;
     SolverBody* bodies_;
     int first_;
+    Wide half_; // see Halves
     Velocities linear_;
     Velocities angular_;
 };

@@ -59,6 +59,7 @@ void Solver::solve_class(const StepConstants& constants,
     joints_.prepare(constants, tables, activity, bodies_);
     contacts_.prepare(constants, tables, frames, activity, bodies_);
     for (std::uint32_t substep = 0; substep < constants.substeps; ++substep) {
+        const Halves halves = substep % 2 == 0 ? Halves::up : Halves::down;
         joints_.begin_substep(bodies_);
         bodies_.integrate_velocities(constants, substep);
         joints_.warm_start(bodies_);
@@ -66,11 +67,11 @@ void Solver::solve_class(const StepConstants& constants,
             contacts_.warm_start(bodies_);
         }
         joints_.solve(bodies_);
-        contacts_.solve(bodies_);
+        contacts_.solve(halves, bodies_);
         bodies_.integrate_positions();
         joints_.follow(constants, tables, bodies_);
         joints_.relax(bodies_);
-        contacts_.relax(bodies_);
+        contacts_.relax(halves, bodies_);
     }
     joints_.write(constants, tables);
     contacts_.write(tables);

@@ -92,9 +92,9 @@ struct EightLanes {
     }
     static Wide zero() { return {}; }
     template <int Shift>
-    static Wide start() {
+    static Wide start(Halves halves = Halves::up) {
         Wide sum{};
-        sum.fill(One::start<Shift>());
+        sum.fill(One::start<Shift>(halves));
         return sum;
     }
     static Wide add_product(Wide sum, const Vector& a, const Vector& b) {

@@ -156,10 +156,12 @@ void expect_same_passes(const Passes& passes,
                         ContactBlock& other,
                         Bodies& others) {
     for (const auto pass : {&Passes::warm_start, &Passes::solve, &Passes::relax}) {
-        (passes.*pass)({&block, 1}, bodies.data());
-        (other_passes.*pass)({&other, 1}, others.data());
-        ASSERT_NO_FATAL_FAILURE(expect_same(block, other));
-        ASSERT_EQ(std::memcmp(bodies.data(), others.data(), sizeof bodies), 0);
+        for (const Halves halves : {Halves::up, Halves::down}) {
+            (passes.*pass)({&block, 1}, bodies.data(), halves);
+            (other_passes.*pass)({&other, 1}, others.data(), halves);
+            ASSERT_NO_FATAL_FAILURE(expect_same(block, other));
+            ASSERT_EQ(std::memcmp(bodies.data(), others.data(), sizeof bodies), 0);
+        }
     }
 }
 
@@ -275,8 +277,8 @@ TEST_P(SimdTest, WildPassesGiveContactsWithoutAWildBodyTheSameBits) {
         draw_bodies(bodies, dice);
         Bodies others = bodies;
         for (const auto pass : {&Passes::warm_start, &Passes::solve, &Passes::relax}) {
-            (kernels.calm.*pass)({block.get(), 1}, bodies.data());
-            (kernels.wild.*pass)({other.get(), 1}, others.data());
+            (kernels.calm.*pass)({block.get(), 1}, bodies.data(), Halves::up);
+            (kernels.wild.*pass)({other.get(), 1}, others.data(), Halves::up);
         }
         for (std::size_t lane = 0; lane < kBlockLanes; ++lane) {
             const SolverBody* pair = &bodies[2 * lane];

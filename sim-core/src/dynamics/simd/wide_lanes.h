@@ -87,8 +87,9 @@ struct WideLanes {
 
     static Wide zero() { return {hn::Zero(SumTag()), hn::Zero(SumTag())}; }
     template <int Shift>
-    static Wide start() {
-        const auto half = hn::Set(SumTag(), std::int64_t{1} << (Shift - 1));
+    static Wide start(Halves halves = Halves::up) {
+        const auto half =
+            hn::Set(SumTag(), (std::int64_t{1} << (Shift - 1)) - static_cast<std::int64_t>(halves));
         return {half, half};
     }
     static Wide add_product(const Wide& sum, Vector a, Vector b) {
