@@ -90,7 +90,7 @@ Stand stand(const WorldDefinition& scene, int ticks) {
     return stand;
 }
 
-/// What lies still goes nowhere by friction's roundings: Box3D's pyramid_210 moves by 0.05 mm in
+/// What lies still goes nowhere by friction's roundings: Box3D's pyramid_210 moves by 0.06 mm in
 /// nine minutes. Columns sway a little longer before they rest.
 void expect_no_creep(const Stand& stand, double most = 0.0005) {
     EXPECT_LT(stand.crept.largest, most);
@@ -102,6 +102,7 @@ TEST(Standing, Pyramid210DriftsThreeCentimetresInTenSeconds) {
     ASSERT_TRUE(scene.ok()) << scene.error().message;
     const Stand stood = stand(scene.value(), long_tests() ? 10 * kTicksAMinute : 600);
     EXPECT_LE(stood.end.largest, long_tests() ? 0.04 : 0.035);
+    EXPECT_LE(stood.end.horizontal, 0.02);
     EXPECT_NEAR(stood.end.horizontal, stood.settled.horizontal, 0.0002);
     expect_no_creep(stood, long_tests() ? 0.0005 : 0.002); // it settles for ten seconds
 }
